@@ -1,0 +1,130 @@
+"""Where the camera stands: the distances, the orbit and the picture's views. Pure numpy.
+
+World space is in millimetres, right-handed: x to the viewer's right, y up, z from the face towards
+the viewer; the origin lies midway between the centres of the two globes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from renderer.clip import ClipSpec
+
+Matrix = npt.NDArray[np.float32]
+
+VERTICAL_FOV_DEG: Final = 12.0  # a portrait lens: no wide-angle faces
+REFERENCE_LINES: Final = 1080
+IRIS_DIAMETER_MM: Final = 11.7  # horizontal visible iris diameter, 11.71 +- 0.42
+LIMBUS_Z_MM: Final = 10.19  # limbus plane in front of the globe's centre, sqrt(11.75^2 - 5.85^2)
+INTEROCULAR_MM: Final = 62.0
+IRIS_PX: Final = {"macroscopic": 350.0, "near": 160.0, "medium": 40.0, "far": 12.0}
+
+
+@dataclass(frozen=True)
+class View:
+    """One rectangle of the picture with its camera.
+
+    ``rectangle`` is x, y, width, height in pixels from the picture's lower left (GL's order).
+    ``eyes`` names the eyes that this view shows as stimulus: (0,) left, (1,) right or both.
+    """
+
+    rectangle: tuple[int, int, int, int]
+    view_matrix: Matrix
+    projection: Matrix
+    position_mm: npt.NDArray[np.float64]
+    eyes: tuple[int, ...]
+
+
+def eye_centre_mm(eye: int) -> npt.NDArray[np.float64]:
+    """Return the centre of the viewer's left (0) or right (1) eye in world space."""
+    return np.array([(-0.5 + eye) * INTEROCULAR_MM, 0.0, 0.0])
+
+
+def camera_radius_mm(distance: str) -> float:
+    """Return the orbit's radius that gives the distance's iris diameter at azimuth 0."""
+    focal_px = REFERENCE_LINES / 2 / math.tan(math.radians(VERTICAL_FOV_DEG) / 2)
+    return focal_px * IRIS_DIAMETER_MM / IRIS_PX[distance] + LIMBUS_Z_MM
+
+
+def views(spec: ClipSpec, azimuth_deg: float, elevation_deg: float = 0.0) -> tuple[View, ...]:
+    """Return the picture's views: two half frames at macroscopic, elsewhere one."""
+    radius = camera_radius_mm(spec.distance)
+    if spec.distance != "macroscopic":
+        whole = (0, 0, spec.width, spec.height)
+        return (_view(whole, np.zeros(3), radius, azimuth_deg, elevation_deg, (0, 1)),)
+    half = spec.width // 2
+    return tuple(
+        _view(
+            (eye * half, 0, half, spec.height),
+            eye_centre_mm(eye),
+            radius,
+            azimuth_deg,
+            elevation_deg,
+            (eye,),
+        )
+        for eye in (0, 1)
+    )
+
+
+def _view(
+    rectangle: tuple[int, int, int, int],
+    target: npt.NDArray[np.float64],
+    radius_mm: float,
+    azimuth_deg: float,
+    elevation_deg: float,
+    eyes: tuple[int, ...],
+) -> View:
+    azimuth, elevation = math.radians(azimuth_deg), math.radians(elevation_deg)
+    direction = np.array(
+        [
+            math.sin(azimuth) * math.cos(elevation),
+            math.sin(elevation),
+            math.cos(azimuth) * math.cos(elevation),
+        ]
+    )
+    position = target + radius_mm * direction
+    projection = perspective(VERTICAL_FOV_DEG, rectangle[2] / rectangle[3], radius_mm * 0.5, 60000)
+    return View(rectangle, look_at(position, target), projection, position, eyes)
+
+
+def look_at(position: npt.NDArray[np.float64], target: npt.NDArray[np.float64]) -> Matrix:
+    """Return the 4 x 4 world-to-camera matrix, column vectors, y up."""
+    back = (position - target) / np.linalg.norm(position - target)
+    right = np.cross([0.0, 1.0, 0.0], back)
+    right /= np.linalg.norm(right)
+    up = np.cross(back, right)
+    matrix = np.eye(4)
+    matrix[:3, :3] = right, up, back
+    matrix[:3, 3] = -matrix[:3, :3] @ position
+    return matrix.astype(np.float32)
+
+
+def perspective(fov_deg: float, aspect: float, near_mm: float, far_mm: float) -> Matrix:
+    """Return OpenGL's perspective matrix for a vertical field of view in degrees."""
+    scale = 1 / math.tan(math.radians(fov_deg) / 2)
+    matrix = np.zeros((4, 4))
+    matrix[0, 0], matrix[1, 1] = scale / aspect, scale
+    matrix[2, 2] = (far_mm + near_mm) / (near_mm - far_mm)
+    matrix[2, 3] = 2 * far_mm * near_mm / (near_mm - far_mm)
+    matrix[3, 2] = -1
+    return matrix.astype(np.float32)
+
+
+def iris_px(spec: ClipSpec, azimuth_deg: float) -> tuple[float, float]:
+    """Return the iris's diameter on the picture in pixels, left and right eye.
+
+    The larger axis of the projected limbus: the size that decides which details can be seen.
+    """
+    diameters = {}
+    for view in views(spec, azimuth_deg):
+        focal_px = view.rectangle[3] / 2 / math.tan(math.radians(VERTICAL_FOV_DEG) / 2)
+        for eye in view.eyes:
+            limbus = eye_centre_mm(eye) + np.array([0.0, 0.0, LIMBUS_Z_MM])
+            depth = -(view.view_matrix @ np.append(limbus, 1.0))[2]
+            diameters[eye] = float(focal_px * IRIS_DIAMETER_MM / depth)
+    return diameters[0], diameters[1]

@@ -1,0 +1,130 @@
+"""The manifest beside the clips: what was rendered, from what, with what, and how well encoded.
+
+Pure apart from reading and writing its own file; it knows neither GL nor study.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from dataclasses import asdict, dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+from renderer.clip import ClipSpec
+
+MANIFEST_NAME: Final = "manifest.json"
+SCHEMA: Final = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClipRecord:
+    """One rendered clip.
+
+    ``iris_px`` is the iris's diameter on the picture per frame (frames, eyes left and right);
+    ``visible_px`` each eye's unoccluded pixels per frame, in the same shape.
+    ``raw_sha256`` is taken over the frames' RGB bytes in order, before encoding.
+    """
+
+    clip_id: str
+    spec: dict[str, Any]
+    file: str
+    file_sha256: str
+    file_bytes: int
+    raw_sha256: str
+    frame_count: int
+    width: int
+    height: int
+    fps: int
+    iris_px: list[list[float]]
+    visible_px: list[list[int]]
+    psnr_db: list[float]
+    ssim: list[float]
+    frame_ms_median: float
+    render_s: float
+    gl_renderer: str
+    gl_version: str
+    code_version: str
+
+    @property
+    def clip_spec(self) -> ClipSpec:
+        """The clip's spec as a ClipSpec."""
+        return ClipSpec.from_dict(self.spec)
+
+
+@dataclass(kw_only=True)
+class Manifest:
+    """All clips of one folder, by clip id."""
+
+    clips: dict[str, ClipRecord] = field(default_factory=dict)
+
+    def add(self, record: ClipRecord) -> None:
+        """Add or replace one clip's record."""
+        self.clips[record.clip_id] = record
+
+    def current(self, clip_id: str, folder: Path) -> ClipRecord | None:
+        """Return the record of a clip that is whole and made by this code version, or None."""
+        record = self.clips.get(clip_id)
+        if record is None or record.code_version != code_version():
+            return None
+        path = folder / record.file
+        whole = path.is_file() and path.stat().st_size == record.file_bytes
+        return record if whole else None
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Read ``manifest.json`` of a folder; an absent file is an empty manifest.
+
+    Raises ValueError naming the file when it is not a manifest of this schema.
+    """
+    path = folder / MANIFEST_NAME
+    if not path.exists():
+        return Manifest()
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        if data["schema"] != SCHEMA:
+            raise ValueError(f"schema {data['schema']}")
+        records = [ClipRecord(**row) for row in data["clips"]]
+    except (ValueError, KeyError, TypeError) as error:
+        raise ValueError(
+            f"{path}: not a manifest of schema {SCHEMA} ({error}); "
+            "move the file away and render again"
+        ) from error
+    return Manifest(clips={record.clip_id: record for record in records})
+
+
+def write_manifest(manifest: Manifest, folder: Path) -> None:
+    """Write ``manifest.json`` atomically: a reader sees the old file or the new one, whole."""
+    data = {"schema": SCHEMA, "clips": [asdict(record) for record in manifest.clips.values()]}
+    write_atomically(folder / MANIFEST_NAME, json.dumps(data, indent=1).encode())
+
+
+def write_atomically(path: Path, data: bytes) -> None:
+    """Write ``data`` beside ``path``, flush it to disk and rename it into place."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+@cache
+def code_version() -> str:
+    """Return 16 hexadecimal digits over the renderer's own sources: same code, same frames."""
+    digest = hashlib.sha256()
+    root = Path(__file__).parent
+    for path in sorted(root.rglob("*")):
+        if path.suffix in {".py", ".glsl", ".vert", ".frag", ".comp"}:
+            digest.update(path.relative_to(root).as_posix().encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
