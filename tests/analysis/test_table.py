@@ -1,0 +1,47 @@
+"""The tables' columns as data: the contract between the export, the codebook and the reader."""
+
+import json
+
+import pytest
+
+from analysis import table
+from renderer import clip, detail
+
+
+def test_words_are_those_of_the_renderer() -> None:
+    assert table.EFFECTS == detail.EFFECTS
+    assert table.LEVELS == detail.LEVELS
+    assert table.STANDARD_LODS == detail.STANDARD_LODS
+    assert table.DISTANCES == clip.DISTANCES
+
+
+def test_ratings_have_the_contracts_columns_in_its_order() -> None:
+    contract = (
+        "study, study_version, simulated, participant, session, trial, position, clip, distance, "
+        "iris_px, iris_deg, shown_scale, orbit_direction, eye, lod, lod_rank, other_lod, texture, "
+        "refraction, reflection, subsurface, caustics, tessellation, sclera, rating, is_practice, "
+        "is_catch, certified, dropped_frames, views, response_ms, started_at"
+    )
+    assert table.column_names("ratings") == tuple(contract.split(", "))
+
+
+@pytest.mark.parametrize("name", list(table.COLUMNS))
+def test_every_column_has_one_meaning(name: str) -> None:
+    columns = table.COLUMNS[name]
+    assert len({column.name for column in columns}) == len(columns)
+    assert all(column.meaning for column in columns)
+
+
+def test_codebook_survives_json_and_gives_back_what_a_study_accepts() -> None:
+    own = {"lod": ["low", "ultra-no-caustics"], "rating": (1.0, 7.0)}
+    book = json.loads(json.dumps(table.codebook(own)))
+    accepted = table.accepted_in(book, "ratings")
+    assert accepted["lod"] == ["low", "ultra-no-caustics"]
+    assert accepted["rating"] == (1.0, 7.0)
+    assert accepted["eye"] == ["left", "right"]
+
+
+def test_a_studys_own_columns_enter_its_codebook() -> None:
+    own = table.Column("screen", "text", "which of the two laboratory screens")
+    book = table.codebook(more={"participants": [own]})
+    assert book["tables"]["participants"][-1]["name"] == "screen"
