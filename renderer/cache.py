@@ -1,0 +1,56 @@
+"""A disk cache for bakes that depend on nothing but their key: textures, tables, cone maps.
+
+The cache may be deleted at any time. Keys carry the renderer's code version, so a changed recipe
+never meets an old bake.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from renderer.manifest import code_version, write_atomically
+
+Array = npt.NDArray[np.generic]
+
+
+def cache_folder() -> Path:
+    """Return the folder of bakes: OCULARIST_CACHE or the user's cache folder."""
+    named = os.environ.get("OCULARIST_CACHE")
+    if named:
+        return Path(named)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ocularist"
+
+
+def cached_arrays(key: str, make: Callable[[], dict[str, Array]]) -> dict[str, Array]:
+    """Return named arrays from the cache, or make and keep them.
+
+    ``key`` names everything that the arrays depend on besides the renderer's code.
+    A damaged or unreadable file is made anew; a folder that cannot be written is no error.
+    """
+    digest = hashlib.sha256(f"{code_version()}:{key}".encode()).hexdigest()[:24]
+    path = cache_folder() / f"{digest}.npz"
+    try:
+        with np.load(path, allow_pickle=False) as kept:
+            return {name: kept[name] for name in kept.files}
+    except (OSError, ValueError, EOFError):
+        pass
+    arrays = make()
+    buffer = io.BytesIO()
+    np.savez(buffer, **arrays)  # type: ignore[arg-type]  # numpy's stub takes the keywords for allow_pickle
+    try:
+        write_atomically(path, buffer.getvalue())
+    except OSError:
+        return arrays
+    return arrays
+
+
+def cached_array(key: str, make: Callable[[], Array]) -> Array:
+    """Return one array from the cache, or make and keep it."""
+    return cached_arrays(key, lambda: {"array": make()})["array"]

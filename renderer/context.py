@@ -1,0 +1,44 @@
+"""The headless OpenGL context: a GPU where there is one, Mesa's llvmpipe where there is none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import moderngl
+
+GL_VERSION: Final = 430  # core profile: what llvmpipe and every GPU of the last ten years offer
+
+
+@dataclass(frozen=True)
+class GlIdentity:
+    """Which implementation drew the frames: part of what a frame's hash depends on."""
+
+    renderer: str
+    version: str
+
+    @property
+    def is_software(self) -> bool:
+        """Whether the processor draws: timer queries mean nothing then."""
+        return any(name in self.renderer.lower() for name in ("llvmpipe", "softpipe", "swrast"))
+
+
+def create_context() -> moderngl.Context:
+    """Open a context without a window through EGL.
+
+    Raises RuntimeError that names the libraries to install when EGL gives none.
+    """
+    try:
+        gl = moderngl.create_context(standalone=True, backend="egl", require=GL_VERSION)
+    except Exception as error:
+        raise RuntimeError(
+            f"no OpenGL {GL_VERSION / 100:.1f} context through EGL ({error}); install a driver, for "
+            "software rendering on Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri"
+        ) from error
+    gl.gc_mode = "auto"
+    return gl
+
+
+def identify(gl: moderngl.Context) -> GlIdentity:
+    """Return the names of the context's renderer and version."""
+    return GlIdentity(gl.info["GL_RENDERER"], gl.info["GL_VERSION"])

@@ -1,0 +1,50 @@
+"""The light of a scene as all shaders see it: sun, ambient light, shadow map.
+
+One record, one set of uniform names (``shaders/light.glsl``), so that the eye, the skin and the
+crowd stand in the same light. Radiometric values are linear Rec. 709, scaled so that a white
+Lambertian surface facing the sun leaves with a radiance of about 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sky:
+    """What an environment gives at a sun position, without any GL.
+
+    ``sun_direction`` is a unit vector towards the sun in world space; ``sun_irradiance`` (3,) what
+    falls on a surface that faces it; ``ambient_sh`` (9, 3) the spherical-harmonic coefficients of
+    the surroundings' radiance without the sun (real, orthonormal, Ramamoorthi and Hanrahan 2001).
+    """
+
+    sun_direction: Vector
+    sun_irradiance: Vector
+    ambient_sh: Vector
+
+
+@dataclass
+class Light:
+    """The sky's numbers with the head's sun shadow map (depth, compared in the shader)."""
+
+    sky: Sky
+    shadow_map: moderngl.Texture
+    world_to_shadow: npt.NDArray[np.float32]
+
+    def uniforms(self) -> dict[str, Any]:
+        """Return every uniform and texture of ``shaders/light.glsl`` by name."""
+        return {
+            "u_sun_direction": self.sky.sun_direction,
+            "u_sun_irradiance": self.sky.sun_irradiance,
+            "u_ambient_sh": self.sky.ambient_sh,
+            "u_sun_shadow": self.shadow_map,
+            "u_world_to_shadow": self.world_to_shadow,
+        }

@@ -1,0 +1,159 @@
+"""Shader assembly: includes, generated constants, readable errors and checked uniforms.
+
+A level is chosen by a generated header of ``const int`` plus plain ``if`` in the effect's file: a
+misspelt constant fails to compile and names itself, dead code still disappears.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import moderngl
+import numpy as np
+
+from renderer.detail import LEVELS, Detail
+
+SHADERS: Final = Path(__file__).parent / "shaders"
+VERSION_LINE: Final = "#version 430 core\n"
+_INCLUDE: Final = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
+_UNIFORM: Final = re.compile(r"^\s*uniform\s+(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*;", re.MULTILINE)
+_ERROR_PLACE: Final = re.compile(r"\b(\d+):(\d+)\((\d+)\)|\b(\d+)\((\d+)\)")
+
+Constants = Mapping[str, int | float]
+
+
+@dataclass
+class Source:
+    """One stage's text with the files that its ``#line`` numbers mean."""
+
+    text: str
+    files: list[str]
+
+
+def detail_constants(detail: Detail) -> dict[str, int]:
+    """Return the header of one LoD: ``OFF .. ULTRA`` and the level of each effect."""
+    numbers = {level.upper(): rank for rank, level in enumerate(LEVELS)}
+    return numbers | {
+        effect.upper(): LEVELS.index(level) for effect, level in detail.levels().items()
+    }
+
+
+def assemble(name: str, constants: Constants | None = None) -> Source:
+    """Read a shader, its includes (depth first, each file once) and the constants' header.
+
+    Raises FileNotFoundError naming the including file and line.
+    """
+    files: list[str] = []
+    body = _expand(name, files, included_from="the program")
+    header = "".join(_constant(key, value) for key, value in (constants or {}).items())
+    return Source(VERSION_LINE + header + body, files)
+
+
+def _constant(name: str, value: int | float) -> str:
+    if isinstance(value, int):
+        return f"const int {name} = {value};\n"
+    return f"const float {name} = {float(value)!r};\n"
+
+
+def _expand(name: str, files: list[str], *, included_from: str) -> str:
+    path = SHADERS / name
+    if not path.is_file():
+        raise FileNotFoundError(f"{included_from}: no shader file {name} in {SHADERS.name}/")
+    number = len(files)
+    files.append(name)
+    lines = [f"#line 1 {number}"]
+    for row, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+        match = _INCLUDE.match(line)
+        if not match:
+            lines.append(line)
+        elif match[1] not in files:
+            lines.append(_expand(match[1], files, included_from=f"{name}:{row}"))
+            lines.append(f"#line {row + 1} {number}")
+    return "\n".join(lines) + "\n"
+
+
+@dataclass
+class Program:
+    """A linked program whose uniforms are set by name and checked against its sources."""
+
+    gl_program: moderngl.Program
+    declared: dict[str, str]
+    units: dict[str, int] = field(default_factory=dict)
+
+    def set(self, **values: Any) -> None:
+        """Set uniforms and bind textures; a name that no source declares raises KeyError.
+
+        A declared uniform that the chosen levels never read is skipped. Matrices are given as
+        (4, 4) arrays of column-vector convention; textures get a unit of their own.
+        """
+        for name, value in values.items():
+            if name not in self.declared:
+                raise KeyError(f"{name}: no shader of this program declares such a uniform")
+            if name not in self.gl_program:
+                continue
+            if self.declared[name].startswith(("sampler", "isampler", "usampler")):
+                value.use(location=self.units[name])
+            else:
+                self.gl_program[name].write(_pack(value, self.declared[name]))  # type: ignore[union-attr]  # declared uniforms are never blocks
+
+    def is_active(self, name: str) -> bool:
+        """Whether the linked program still reads this uniform."""
+        return name in self.gl_program
+
+
+def _pack(value: Any, kind: str) -> bytes:
+    if kind in {"int", "bool", "ivec2", "ivec3", "ivec4"}:
+        return np.ascontiguousarray(value, dtype=np.int32).tobytes()
+    array = np.asarray(value, dtype=np.float32)
+    if kind.startswith("mat"):
+        array = np.swapaxes(array, -1, -2)
+    return np.ascontiguousarray(array).tobytes()
+
+
+def build_program(
+    gl: moderngl.Context,
+    vertex: str,
+    *,
+    fragment: str | None = None,
+    geometry: str | None = None,
+    constants: Constants | None = None,
+) -> Program:
+    """Compile and link shader files of ``renderer/shaders``.
+
+    Raises RuntimeError with our file names and lines when GLSL does not compile.
+    """
+    stages = {
+        "vertex_shader": vertex,
+        "fragment_shader": fragment,
+        "geometry_shader": geometry,
+    }
+    sources = {stage: assemble(name, constants) for stage, name in stages.items() if name}
+    try:
+        program = gl.program(**{stage: source.text for stage, source in sources.items()})
+    except moderngl.Error as error:
+        raise RuntimeError(_explain(str(error), sources)) from error
+    declared = {
+        name: kind for source in sources.values() for kind, name, _ in _UNIFORM.findall(source.text)
+    }
+    samplers = [name for name, kind in declared.items() if "sampler" in kind and name in program]
+    units = {name: unit for unit, name in enumerate(samplers)}
+    for name, unit in units.items():
+        program[name].value = unit  # type: ignore[union-attr]  # a sampler is a plain uniform
+    return Program(program, declared, units)
+
+
+def _explain(message: str, sources: Mapping[str, Source]) -> str:
+    stage = "fragment_shader" if "fragment_shader" in message else "vertex_shader"
+    if "geometry_shader" in message and "geometry_shader" in sources:
+        stage = "geometry_shader"
+    files = sources[stage].files if stage in sources else []
+
+    def place(match: re.Match[str]) -> str:
+        number, line = (match[1], match[2]) if match[1] else (match[4], match[5])
+        return f"{files[int(number)]}:{line}" if int(number) < len(files) else match[0]
+
+    return f"{stage.replace('_', ' ')} does not compile\n" + _ERROR_PLACE.sub(place, message)
