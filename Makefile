@@ -1,0 +1,36 @@
+# The two commands that set everything up are `make study` and `make test`; `make help` lists the rest.
+.DEFAULT_GOAL := help
+.PHONY: help study test test-long test-fresh lock clean
+
+PYTHON := .venv/bin/python
+# make study STUDY=my-study.toml ARGS="--port 8080"
+STUDY ?=
+ARGS ?=
+
+help: ## show these lines
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+study: ## set up what is missing, then run the study: site and renderer
+	@deploy/setup study
+	@exec .venv/bin/ocularist run $(STUDY) $(ARGS)
+
+test: ## set up what is missing, then format, lint, types and tests
+	@deploy/setup test
+	$(PYTHON) -m ruff format --check .
+	$(PYTHON) -m ruff check .
+	$(PYTHON) -m mypy
+	$(PYTHON) -m pytest -m "not long" $(ARGS)
+
+test-long: ## the long simulations
+	@deploy/setup test
+	$(PYTHON) -m pytest -m long $(ARGS)
+
+test-fresh: ## prove both set-ups in an empty Debian (root and debootstrap)
+	@deploy/fresh
+
+lock: ## make the lock files anew from pyproject.toml
+	@deploy/lock
+
+clean: ## remove what was built; studies' data stay
+	rm -rf .venv out build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
