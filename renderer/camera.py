@@ -54,26 +54,31 @@ def camera_radius_mm(distance: str) -> float:
 def views(spec: ClipSpec, azimuth_deg: float, elevation_deg: float = 0.0) -> tuple[View, ...]:
     """Return the picture's views: two half frames at macroscopic, elsewhere one."""
     radius = camera_radius_mm(spec.distance)
-    if spec.distance != "macroscopic":
-        whole = (0, 0, spec.width, spec.height)
-        return (_view(whole, np.zeros(3), radius, azimuth_deg, elevation_deg, (0, 1)),)
     half = spec.width // 2
+    rows: tuple[tuple[tuple[int, int, int, int], npt.NDArray[np.float64], tuple[int, ...]], ...]
+    if spec.distance == "macroscopic":
+        rows = tuple(
+            ((eye * half, 0, half, spec.height), eye_centre_mm(eye), (eye,)) for eye in (0, 1)
+        )
+    else:
+        rows = (((0, 0, spec.width, spec.height), np.zeros(3), (0, 1)),)
     return tuple(
         _view(
-            (eye * half, 0, half, spec.height),
-            eye_centre_mm(eye),
-            radius,
-            azimuth_deg,
-            elevation_deg,
-            (eye,),
+            rectangle,
+            target,
+            radius_mm=radius,
+            azimuth_deg=azimuth_deg,
+            elevation_deg=elevation_deg,
+            eyes=eyes,
         )
-        for eye in (0, 1)
+        for rectangle, target, eyes in rows
     )
 
 
 def _view(
     rectangle: tuple[int, int, int, int],
     target: npt.NDArray[np.float64],
+    *,
     radius_mm: float,
     azimuth_deg: float,
     elevation_deg: float,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import moderngl
 
@@ -28,12 +28,13 @@ def create_context() -> moderngl.Context:
 
     Raises RuntimeError that names the libraries to install when EGL gives none.
     """
+    settings: dict[str, Any] = {"standalone": True, "backend": "egl", "require": GL_VERSION}
     try:
-        gl = moderngl.create_context(standalone=True, backend="egl", require=GL_VERSION)
+        gl = moderngl.create_context(**settings)
     except Exception as error:
         raise RuntimeError(
-            f"no OpenGL {GL_VERSION / 100:.1f} context through EGL ({error}); install a driver, for "
-            "software rendering on Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri"
+            f"no OpenGL {GL_VERSION / 100:.1f} context through EGL ({error}); install a driver, "
+            "for software rendering on Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri"
         ) from error
     gl.gc_mode = "auto"
     return gl

@@ -133,7 +133,8 @@ def build_program(
     }
     sources = {stage: assemble(name, constants) for stage, name in stages.items() if name}
     try:
-        program = gl.program(**{stage: source.text for stage, source in sources.items()})
+        texts: dict[str, Any] = {stage: source.text for stage, source in sources.items()}
+        program = gl.program(**texts)
     except moderngl.Error as error:
         raise RuntimeError(_explain(str(error), sources)) from error
     declared = {
