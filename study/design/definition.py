@@ -1,0 +1,205 @@
+"""A whole study in one file: read it, check it, ask it for its clips. Code names no clip.
+
+Pure apart from reading the file. Every fault of a file is reported at once, with its place.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, ValidationError
+
+from renderer.clip import ClipSpec
+from renderer.detail import Detail
+from study.design.checks import cross_faults
+from study.design.faults import DefinitionError, Fault, faults_of, suggestion
+from study.design.pairings import CatchClip, Clip, Factors, LodRow, all_clips, detail_of
+from study.design.parts import (
+    Distance,
+    Eye,
+    Name,
+    Orbit,
+    Part,
+    Scene,
+    Size,
+    SizeText,
+    Text,
+    Whole,
+    clip_value,
+)
+from study.design.questions import Question
+from study.design.texts import Consent, Contact, Page, Thanks
+
+
+class Order(Part):
+    """How trials follow each other: drawn anew for each participant, or as the file has them."""
+
+    trials: Literal["random", "file"] = "random"
+    min_views: Annotated[Whole, Field(ge=1, le=10)] = 1
+
+
+@dataclass(frozen=True)
+class WantedClip:
+    """One clip to render for a study: which clip, how, and what it depends on."""
+
+    clip: Clip
+    size: Size
+    orbit_direction: str
+    spec: ClipSpec
+
+
+class StudyDefinition(Part):
+    """Everything that makes one study: what is shown, to whom, in which order, with which words."""
+
+    key: Name
+    version: Name
+    title: Text
+    language: Name = "en"
+    contact: Contact
+    preset: Annotated[str, clip_value("preset")] = "thesis"
+    sizes: Annotated[tuple[SizeText, ...], Field(min_length=1)]
+    distances: Annotated[tuple[Distance, ...], Field(min_length=1)]
+    orbit: Orbit = Orbit()
+    eye: Eye = Eye()
+    scene: Scene = Scene()
+    lods: Annotated[dict[Name, LodRow], Field(min_length=1)]
+    practice: tuple[Clip, ...] = ()
+    clips: tuple[Clip, ...] = ()
+    factors: tuple[Factors, ...] = ()
+    catch: tuple[CatchClip, ...] = ()
+    order: Order = Order()
+    consent: Consent
+    about: tuple[Question, ...] = ()
+    about_page: Page
+    instructions: Page
+    questions: Annotated[tuple[Question, ...], Field(min_length=1)]
+    thanks: Thanks
+
+    @cached_property
+    def trial_clips(self) -> tuple[Clip, ...]:
+        """The clips of the trials in the file's order, catch clips last; practice not included."""
+        return all_clips(self.clips, self.factors, self.catch)
+
+    @property
+    def every_clip(self) -> tuple[Clip, ...]:
+        """Practice clips, then those of the trials."""
+        return (*self.practice, *self.trial_clips)
+
+    def clip(self, clip_id: str) -> Clip:
+        """Return the clip that the file calls ``clip_id``; raises KeyError."""
+        return {clip.id: clip for clip in self.every_clip}[clip_id]
+
+    def detail(self, lod: str) -> Detail:
+        """Return a LoD's seven levels; raises KeyError for a name that the file does not define."""
+        return detail_of(self.lods, lod)
+
+    def clip_spec(self, clip: Clip, *, size: Size, orbit_direction: str) -> ClipSpec:
+        """Return everything that the frames of one clip depend on."""
+        return ClipSpec(
+            left=self.detail(clip.left),
+            right=self.detail(clip.right),
+            distance=clip.distance,
+            orbit_deg=self.orbit.orbit_deg,
+            orbit_direction=orbit_direction,
+            duration_s=self.orbit.duration_s,
+            fps=self.orbit.fps,
+            width=size.width,
+            height=size.height,
+            preset=self.preset,
+            **self.eye.model_dump(),
+            **self.scene.model_dump(),
+        )
+
+    def clip_specs(self, size: Size, orbit_direction: str) -> dict[str, ClipSpec]:
+        """Return clip id -> spec of every clip, practice included, for one size and direction."""
+        return {
+            clip.id: self.clip_spec(clip, size=size, orbit_direction=orbit_direction)
+            for clip in self.every_clip
+        }
+
+    def wanted_specs(self) -> list[WantedClip]:
+        """Return what to render in the order in which it is needed.
+
+        The whole first size comes first, one direction after the other: a participant can start as
+        soon as one direction of one size is there.
+        """
+        return [
+            WantedClip(
+                clip, size, direction, self.clip_spec(clip, size=size, orbit_direction=direction)
+            )
+            for size in self.sizes
+            for direction in self.orbit.directions
+            for clip in self.every_clip
+        ]
+
+    def to_json(self) -> str:
+        """Write the definition as JSON in the file's order; ``parse_definition`` reads it back."""
+        return json.dumps(self.model_dump(mode="json"), ensure_ascii=False)
+
+    @property
+    def definition_hash(self) -> str:
+        """16 hexadecimal digits over the contents; comments and the order of keys do not matter."""
+        text = json.dumps(self.model_dump(mode="json"), sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def built_in_names() -> list[str]:
+    """Return the names of the studies that come with Ocularist."""
+    folder = resources.files("study.design") / "definitions"
+    return sorted(
+        entry.name.removesuffix(".toml")
+        for entry in folder.iterdir()
+        if entry.name.endswith(".toml")
+    )
+
+
+def read_definition(name_or_path: str | Path) -> StudyDefinition:
+    """Read a built-in study by name or any study by the path of its file.
+
+    Raises DefinitionError with every fault of the file.
+    """
+    text, source = _read_text(str(name_or_path))
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise DefinitionError(source, [Fault("", f"not a TOML file: {error}")]) from None
+    return parse_definition(data, source=source)
+
+
+def parse_definition(data: Mapping[str, Any], *, source: str = "definition") -> StudyDefinition:
+    """Check the contents of a study file; raises DefinitionError with every fault at once."""
+    faults = cross_faults(data)
+    try:
+        definition = StudyDefinition.model_validate(dict(data))
+    except ValidationError as error:
+        faults = faults_of(error, StudyDefinition) + faults
+    if faults:
+        raise DefinitionError(source, list(dict.fromkeys(faults)))
+    return definition
+
+
+def _read_text(name_or_path: str) -> tuple[str, str]:
+    """Return the text and the name that messages give it."""
+    names = built_in_names()
+    if name_or_path in names:
+        resource = resources.files("study.design") / "definitions" / f"{name_or_path}.toml"
+        return resource.read_text(encoding="utf-8"), resource.name
+    path = Path(name_or_path)
+    try:
+        return path.read_text(encoding="utf-8"), path.name
+    except UnicodeDecodeError as error:
+        raise DefinitionError(path.name, [Fault("", f"not UTF-8 text: {error}")]) from None
+    except OSError as error:
+        reason = (
+            f"cannot be read ({error.strerror}); give the path of a TOML file or a built-in study: "
+            f"{', '.join(names)}{suggestion(name_or_path, names)}"
+        )
+        raise DefinitionError(name_or_path, [Fault("", reason)]) from None

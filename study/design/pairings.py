@@ -1,0 +1,115 @@
+"""Pairings of LoDs at distances: clips written out, clips generated from factors, catch clips.
+
+Pure. A pairing names LoDs and a distance; sizes, light and iris come from the rest of the study.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Annotated, Literal
+
+from pydantic import Field, field_validator
+
+from renderer.detail import EFFECTS, LEVELS, Detail
+from study.design.faults import refuse, unknown
+from study.design.parts import Distance, Name, Part
+
+
+class LodRow(Part):
+    """One LoD: the level of each effect; ``base`` names the LoD that fills in unnamed effects."""
+
+    base: str | None = None
+    texture: str | None = None
+    refraction: str | None = None
+    reflection: str | None = None
+    subsurface: str | None = None
+    caustics: str | None = None
+    tessellation: str | None = None
+    sclera: str | None = None
+
+    @field_validator(*EFFECTS)
+    @classmethod
+    def _check_level(cls, level: str | None) -> str | None:
+        if level is not None and level not in LEVELS:
+            raise refuse(unknown("level", level, LEVELS))
+        return level
+
+    def levels(self) -> dict[str, str]:
+        """Return effect -> level of the effects that this row names itself."""
+        return {e: getattr(self, e) for e in EFFECTS if getattr(self, e) is not None}
+
+
+def detail_of(lods: dict[str, LodRow], name: str) -> Detail:
+    """Return a LoD's seven levels, its bases followed."""
+    row = lods[name]
+    if row.base is None:
+        return Detail(**row.levels())
+    return detail_of(lods, row.base).with_levels(**row.levels())
+
+
+class Clip(Part):
+    """One pairing at one distance. Left and right are the viewer's."""
+
+    id: Name
+    distance: Distance
+    left: str
+    right: str
+
+    @property
+    def is_catch(self) -> bool:
+        """Both eyes have the same LoD: who notices a difference here measures false alarms."""
+        return self.left == self.right
+
+
+class CatchClip(Part):
+    """The same LoD in both eyes, written shortly."""
+
+    id: Name | None = None
+    distance: Distance
+    lod: str
+
+    def clip(self) -> Clip:
+        """Return the clip that shows this LoD twice."""
+        name = self.id or f"catch-{self.distance}-{self.lod}"
+        return Clip(id=name, distance=self.distance, left=self.lod, right=self.lod)
+
+
+class Factors(Part):
+    """Every LoD of ``lods`` beside every LoD of ``against`` at every distance.
+
+    ``sides``: "given" puts ``lods`` on the left, "swapped" on the right, "both" shows each pairing
+    both ways round, "alternating" changes sides from one pairing to the next.
+    """
+
+    distances: Annotated[tuple[Distance, ...], Field(min_length=1)]
+    lods: Annotated[tuple[str, ...], Field(min_length=1)]
+    against: Annotated[tuple[str, ...], Field(min_length=1)]
+    sides: Literal["given", "swapped", "both", "alternating"] = "both"
+
+    def clips(self) -> Iterator[Clip]:
+        """Generate the clips, named ``near-low-ultra``: distance, left, right."""
+        pairs = [
+            (distance, lod, other)
+            for distance in self.distances
+            for other in self.against
+            for lod in self.lods
+            if lod != other
+        ]
+        for index, (distance, lod, other) in enumerate(pairs):
+            is_odd = index % 2 == 1
+            if self.sides in ("given", "both") or (self.sides == "alternating" and not is_odd):
+                yield _pair(distance, lod, other)
+            if self.sides in ("swapped", "both") or (self.sides == "alternating" and is_odd):
+                yield _pair(distance, other, lod)
+
+
+def _pair(distance: str, left: str, right: str) -> Clip:
+    return Clip(id=f"{distance}-{left}-{right}", distance=distance, left=left, right=right)
+
+
+def all_clips(
+    clips: Iterable[Clip], factors: Iterable[Factors], catch: Iterable[CatchClip]
+) -> tuple[Clip, ...]:
+    """Return the trials' clips in the file's order: written out, generated, catch."""
+    generated = [clip for block in factors for clip in block.clips()]
+    return (*clips, *generated, *(entry.clip() for entry in catch))

@@ -1,0 +1,193 @@
+"""Questions of a study: choice, scale, number, text; and what counts as an answer to each.
+
+Pure. A question's ``id`` is its column: the ids in ``STANDARD`` are those that the tables and the
+analysis know; answers to any other id are exported beside them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal
+
+from pydantic import Field
+
+from study.design.parts import Name, Part, Text, Whole
+
+Value = int | float | str
+MAX_TEXT_CHARS: Final = 10_000
+
+
+class Option(Part):
+    """One answer of a choice: what is stored and what is read on the page."""
+
+    value: Whole | Text
+    label: Text
+
+
+class ShownIf(Part):
+    """Show a question only after another one was answered with one of these values."""
+
+    question: Name
+    values: Annotated[tuple[Whole | Text, ...], Field(min_length=1)]
+
+
+class _Question(Part):
+    """What all questions have. ``is_required`` is false unless the file says otherwise."""
+
+    id: Name
+    text: Text
+    help: str = ""
+    is_required: bool = False
+    shown_if: ShownIf | None = None
+
+
+class ChoiceQuestion(_Question):
+    """Pick one of a few."""
+
+    kind: Literal["choice"]
+    options: Annotated[tuple[Option, ...], Field(min_length=2)]
+
+
+class ScaleQuestion(_Question):
+    """Pick a whole number between two named ends."""
+
+    kind: Literal["scale"]
+    lowest: Whole = 1
+    highest: Whole = 5
+    lowest_label: Text
+    highest_label: Text
+
+
+class NumberQuestion(_Question):
+    """Type a whole number within limits."""
+
+    kind: Literal["number"]
+    minimum: Whole
+    maximum: Whole
+    unit: str = ""
+
+
+class TextQuestion(_Question):
+    """Write in one's own words."""
+
+    kind: Literal["text"]
+    max_chars: Annotated[Whole, Field(ge=1, le=MAX_TEXT_CHARS)] = 2000
+    is_long: bool = True
+
+
+Question = Annotated[
+    ChoiceQuestion | ScaleQuestion | NumberQuestion | TextQuestion, Field(discriminator="kind")
+]
+
+
+@dataclass(frozen=True)
+class Standard:
+    """A question that the tables have a column for: its kind and the values of that column."""
+
+    kind: str
+    values: tuple[Value, ...] = ()
+
+
+STANDARD: Final[Mapping[str, Standard]] = {
+    "rating_left": Standard("scale", (1, 2, 3, 4, 5)),
+    "rating_right": Standard("scale", (1, 2, 3, 4, 5)),
+    "comparison": Standard("choice", (-1, 0, 1)),
+    "noticed": Standard("choice", ("yes", "unsure", "no")),
+    "what_differed": Standard("text"),
+    "comments": Standard("text"),
+}
+
+
+class AnswerError(ValueError):
+    """Answers that cannot be stored; ``faults`` holds question id -> sentence for its asker."""
+
+    def __init__(self, faults: Mapping[str, str]) -> None:
+        self.faults = dict(faults)
+        super().__init__("; ".join(f"{name}: {fault}" for name, fault in faults.items()))
+
+
+def accepted_values(question: Question) -> tuple[Value, ...]:
+    """Return the values that a choice or scale can take; empty for number and text."""
+    if isinstance(question, ChoiceQuestion):
+        return tuple(option.value for option in question.options)
+    if isinstance(question, ScaleQuestion):
+        return tuple(range(question.lowest, question.highest + 1))
+    return ()
+
+
+def read_answers(
+    questions: Sequence[Question], given: Mapping[str, object], *, is_final: bool = True
+) -> dict[str, Value | None]:
+    """Read a form's or a script's answers into what is stored.
+
+    Only ids that ``given`` holds are returned; an empty string or None is a skipped question, kept
+    as None. A question hidden by its rule keeps what it was given: the rule decides what is shown,
+    never what is thrown away. With ``is_final`` required questions that are shown must be answered.
+    Raises AnswerError with every fault at once.
+    """
+    by_id = {question.id: question for question in questions}
+    faults = dict.fromkeys(given.keys() - by_id, "This question is not part of the study.")
+    answers: dict[str, Value | None] = {}
+    for name, question in by_id.items():
+        if name in given:
+            try:
+                answers[name] = read_answer(question, given[name])
+            except ValueError as error:
+                faults[name] = str(error)
+    if is_final:
+        faults |= {
+            question.id: "Please answer this question to go on."
+            for question in questions
+            if question.is_required
+            and question.id not in faults
+            and is_shown(question, answers)
+            and answers.get(question.id) is None
+        }
+    if faults:
+        raise AnswerError(faults)
+    return answers
+
+
+def is_shown(question: Question, answers: Mapping[str, Value | None]) -> bool:
+    """Say whether a question's rule lets it be shown after these answers."""
+    rule = question.shown_if
+    return rule is None or answers.get(rule.question) in rule.values
+
+
+def read_answer(question: Question, given: object) -> Value | None:
+    """Read one answer; None when skipped. Raises ValueError with a sentence for the participant."""
+    if given is None or (isinstance(given, str) and not given.strip()):
+        return None
+    text = str(given).strip()
+    if isinstance(question, TextQuestion):
+        return _read_text(question, text)
+    if isinstance(question, NumberQuestion):
+        return _read_number(question, text)
+    for value in accepted_values(question):
+        if text == str(value):
+            return value
+    raise ValueError("Please choose one of the answers shown.")
+
+
+def _read_text(question: TextQuestion, text: str) -> str:
+    # U+0000 cannot be stored by PostgreSQL; lone surrogates cannot be encoded at all.
+    cleaned = text.replace("\x00", "").replace("\r\n", "\n")
+    cleaned = cleaned.encode("utf-8", "replace").decode("utf-8")
+    if len(cleaned) > question.max_chars:
+        raise ValueError(
+            f"Please shorten your text to {question.max_chars} characters; "
+            f"it has {len(cleaned)} now."
+        )
+    return cleaned
+
+
+def _read_number(question: NumberQuestion, text: str) -> int:
+    accepted = f"Please enter a whole number from {question.minimum} to {question.maximum}."
+    try:
+        value = int(text)
+    except ValueError:
+        raise ValueError(accepted) from None
+    if not question.minimum <= value <= question.maximum:
+        raise ValueError(accepted)
+    return value
