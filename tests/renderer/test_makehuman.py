@@ -46,7 +46,7 @@ def test_a_target_moves_only_its_own_vertices_in_proportion() -> None:
     np.testing.assert_allclose(half * 2, whole)
     moved = np.flatnonzero(np.abs(whole).max(axis=1) > 3.0)
     assert 20 < len(moved) < 1000
-    assert makehuman.base_mesh().vertices_mm[moved, 0].min() > 0
+    assert np.median(makehuman.base_mesh().vertices_mm[moved, 0]) > 20
 
 
 def test_an_unknown_target_is_an_error_with_examples() -> None:
@@ -68,7 +68,9 @@ def test_men_are_taller_and_the_height_property_works() -> None:
 
 def test_a_phenotype_between_anchors_is_their_mixture() -> None:
     ends = [makehuman.phenotype(gender=value) for value in (0.0, 1.0)]
-    np.testing.assert_allclose(makehuman.phenotype(gender=0.25), 0.75 * ends[0] + 0.25 * ends[1])
+    np.testing.assert_allclose(
+        makehuman.phenotype(gender=0.25), 0.75 * ends[0] + 0.25 * ends[1], atol=1e-9
+    )
 
 
 def test_phenotype_faults_are_named() -> None:
