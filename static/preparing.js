@@ -1,0 +1,91 @@
+// Waiting for the clips: first for them to be rendered, then for them to reach this browser.
+
+import { fetchPatiently, showPage } from "./navigate.js";
+import { enterFullscreen, screenFacts } from "./screen.js";
+
+const POLL_MS = 2000;
+
+/** Start the page; returns the function that ends it. */
+export function startPreparing(main, { clips, start }) {
+  const form = main.querySelector("form");
+  const meter = main.querySelector("progress");
+  const button = form.querySelector("button");
+  let isOpen = true;
+  for (const part of main.querySelectorAll("[data-retry]")) part.addEventListener("click", load);
+  form.addEventListener("submit", begin);
+  wait();
+  return () => {
+    isOpen = false;
+    clips.onProgress = () => {};
+  };
+
+  /** Show one of the page's states; every state has its words in the page. */
+  function show(state) {
+    if (main.dataset.state === state) return;
+    main.dataset.state = state;
+    for (const part of main.querySelectorAll("[data-when]")) {
+      part.hidden = !part.dataset.when.split(" ").includes(state);
+    }
+  }
+
+  function query() {
+    const facts = screenFacts();
+    return new URLSearchParams({
+      screen_width_px: facts.screen_width_px,
+      screen_height_px: facts.screen_height_px,
+    });
+  }
+
+  /** Ask until the clips of a size that fits this screen are all rendered. */
+  async function wait() {
+    while (isOpen) {
+      const answer = await fetchPatiently(`${main.dataset.state_url}?${query()}`, {}, () =>
+        show("offline"),
+      );
+      if (!answer.ok || !isOpen) {
+        if (isOpen) location.reload(); // the session ended or moved on: the server knows where to
+        return;
+      }
+      const news = await answer.json();
+      if (!news.fits) return show("small");
+      if (news.is_ready) return load(news.clips);
+      show("rendering");
+      meter.value = news.progress;
+      main.querySelector("[data-wait]").textContent = news.wait;
+      await new Promise((resolve) => setTimeout(resolve, POLL_MS));
+    }
+  }
+
+  let wanted = [];
+  async function load(list) {
+    wanted = Array.isArray(list) ? list : wanted;
+    show("loading");
+    const total = wanted.reduce((sum, clip) => sum + clip.bytes, 0);
+    const percent = main.querySelector("[data-percent]");
+    clips.onProgress = () => {
+      const share = Math.min(1, clips.bytesOf(wanted) / total);
+      meter.value = share;
+      percent.textContent = `${Math.floor(100 * share)} %`;
+    };
+    try {
+      await Promise.all(wanted.map((clip) => clips.load(clip)));
+      meter.value = 1;
+      show("ready");
+      button.focus({ preventScroll: true });
+    } catch (error) {
+      main.querySelector("[data-code]").textContent = `LOAD-${error.message}`;
+      show("broken");
+    }
+  }
+
+  /** Full screen is asked for in the click itself: browsers grant it for a gesture only. */
+  async function begin(event) {
+    event.preventDefault();
+    if (form.dataset.sending) return;
+    form.dataset.sending = "yes";
+    await enterFullscreen();
+    const body = new URLSearchParams(new FormData(form));
+    for (const [name, value] of query()) body.set(name, value);
+    await showPage(await fetchPatiently(form.action, { method: "POST", body }), start);
+  }
+}

@@ -1,0 +1,52 @@
+"""Forms: how questions stand on a page, and how a posted form is read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+from fastapi import Request
+
+from study.design.questions import Question
+
+# A whole questionnaire of the longest texts stays far below; more is no form of ours.
+MAX_FORM_BYTES: Final = 256 * 1024
+
+
+def question_rows(questions: Sequence[Question]) -> list[list[Question]]:
+    """Put a question about the left eye and its twin about the right eye into one row."""
+    rows: list[list[Question]] = []
+    for question in questions:
+        last = rows[-1] if rows else []
+        if len(last) == 1 and _is_pair(last[0].id, question.id):
+            last.append(question)
+        else:
+            rows.append([question])
+    return rows
+
+
+def _is_pair(first: str, second: str) -> bool:
+    return first.endswith("_left") and second == first.removesuffix("left") + "right"
+
+
+async def read_form(request: Request) -> dict[str, list[str]]:
+    """Read a posted form into field -> values; files are no answer and are left out."""
+    form = await request.form(max_files=0, max_fields=200, max_part_size=MAX_FORM_BYTES)
+    fields: dict[str, list[str]] = {}
+    for name, value in form.multi_items():
+        if isinstance(value, str):
+            fields.setdefault(name, []).append(value)
+    return fields
+
+
+def first(fields: Mapping[str, Sequence[str]], name: str) -> str:
+    """Return a field's first value, or nothing."""
+    values = fields.get(name, ())
+    return values[0] if values else ""
+
+
+def answers_in(
+    fields: Mapping[str, Sequence[str]], questions: Sequence[Question]
+) -> dict[str, object]:
+    """Return question id -> posted text of every question; one left out was skipped."""
+    return {question.id: first(fields, question.id) for question in questions}
