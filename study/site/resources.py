@@ -19,7 +19,7 @@ def resource_folder(name: str, package: Path = PACKAGE) -> Path:
             return place
     searched = " and ".join(str(place) for place in places)
     raise FileNotFoundError(
-        f"{name}: no such folder at {searched}; install the wheel again or run from a whole checkout"
+        f"{name}: no such folder at {searched}; install again or run from a whole checkout"
     )
 
 
