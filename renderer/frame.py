@@ -1,0 +1,103 @@
+"""One frame from first pass to last.
+
+Crowd cube (only when an eye reflects moving people), then per view: head, eyes, crowd, background,
+lashes and hair; then tone curve and 8 bits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import moderngl
+
+from renderer.camera import View, views
+from renderer.clip import ClipSpec
+from renderer.crowd_cube import CrowdCube
+from renderer.eyes import Eyes
+from renderer.picture import SAMPLES, Picture, Pixels
+from renderer.scene import Scene, build_scene, scene_key
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One picture, (height, width, 3) uint8 sRGB, and each eye's unoccluded pixels in it."""
+
+    pixels: Pixels
+    visible_px: tuple[int, int]
+
+
+class FrameRenderer:
+    """Render the frames of one clip. Pass ``scene`` to reuse the last clip's where it fits."""
+
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        spec: ClipSpec,
+        *,
+        scene: Scene | None = None,
+        wireframe: bool = False,
+    ) -> None:
+        self.gl = gl
+        self.spec = spec
+        self.wireframe = wireframe
+        if scene is None or scene.key != scene_key(spec):
+            scene = build_scene(gl, spec)
+        self.scene = scene
+        self._crowd_cube = self._make_crowd_cube()
+        self._eyes = Eyes(
+            gl,
+            spec,
+            rims=scene.head.rims,
+            light=scene.light,
+            static_cube=scene.surroundings.cube,
+            crowd_cube=self._crowd_cube.texture if self._crowd_cube else None,
+        )
+        self._picture = Picture(gl, (spec.width, spec.height))
+
+    def render(
+        self, azimuth_deg: float, *, time_s: float = 0.0, elevation_deg: float = 0.0
+    ) -> Frame:
+        """Render one frame from a camera azimuth at a scene time."""
+        if self._crowd_cube:
+            self._crowd_cube.render(time_s)
+        self._picture.begin()
+        visible = [0, 0]
+        for view in views(self.spec, azimuth_deg, elevation_deg):
+            self._picture.use_rectangle(view.rectangle)
+            for eye, pixels in self._draw_view(view, time_s).items():
+                visible[eye] = pixels
+        return Frame(self._picture.finish(), (visible[0], visible[1]))
+
+    def render_number(self, frame: int) -> Frame:
+        """Render one frame of the clip by its number (0-based)."""
+        return self.render(self.spec.azimuth_deg(frame), time_s=self.spec.time_s(frame))
+
+    def _make_crowd_cube(self) -> CrowdCube | None:
+        sizes = [
+            int(eye.setting("reflection", "cube_px"))
+            for eye in (self.spec.left, self.spec.right)
+            if eye.setting("reflection", "mode") == "dynamic"
+        ]
+        return CrowdCube(self.gl, max(sizes), self.scene.crowd) if sizes else None
+
+    def _draw_view(self, view: View, time_s: float) -> dict[int, int]:
+        camera = {
+            "view_matrix": view.view_matrix,
+            "projection": view.projection,
+            "camera_mm": view.position_mm,
+        }
+        scene = self.scene
+        scene.head.draw(**camera, light=scene.light)
+        visible = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
+        scene.crowd.draw(**camera, time_s=time_s)
+        scene.surroundings.draw_background(view_matrix=view.view_matrix, projection=view.projection)
+        scene.head.draw_hair(**camera, light=scene.light)
+        return visible
+
+    def _draw_eye(self, eye: int, camera: dict[str, object]) -> int:
+        query = self.gl.query(samples=True)
+        self.gl.wireframe = self.wireframe
+        with query:
+            self._eyes.draw(eye, **camera)
+        self.gl.wireframe = False
+        return int(query.samples) // SAMPLES

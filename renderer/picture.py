@@ -1,0 +1,56 @@
+"""The picture's targets: linear radiance with four samples per pixel, then 8-bit sRGB."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from renderer.program import build_program
+
+SAMPLES: Final = 4  # llvmpipe's maximum
+EXPOSURE: Final = 0.8  # one fixed exposure for every clip: no auto-exposure, fair pairs
+
+Pixels = npt.NDArray[np.uint8]
+
+
+class Picture:
+    """Draw between ``begin`` and ``finish``; ``finish`` returns the frame."""
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
+        self.gl = gl
+        self.size = size
+        self._radiance = gl.texture(size, 4, samples=SAMPLES, dtype="f2")
+        depth = gl.depth_texture(size, samples=SAMPLES)
+        self.target = gl.framebuffer([self._radiance], depth)
+        self._display = gl.framebuffer([gl.texture(size, 4)])
+        self._resolve = build_program(gl, "screen.vert", fragment="resolve.frag")
+        self._screen = gl.vertex_array(self._resolve.gl_program, [])
+        self._bytes = bytearray(size[0] * size[1] * 4)
+
+    def begin(self) -> None:
+        """Clear the radiance target and make it the one that is drawn to."""
+        self.target.use()
+        self.target.viewport = (0, 0, *self.size)
+        self.target.scissor = (0, 0, *self.size)
+        self.target.clear(0.0, 0.0, 0.0, 1.0)
+        self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+
+    def use_rectangle(self, rectangle: tuple[int, int, int, int]) -> None:
+        """Confine drawing to one view: x, y, width, height from the lower left in pixels."""
+        self.target.use()
+        self.target.viewport = rectangle
+        self.target.scissor = rectangle
+
+    def finish(self) -> Pixels:
+        """Tone map and return the frame, (height, width, 3) uint8 sRGB, first row on top."""
+        self.target.scissor = (0, 0, *self.size)
+        self._display.use()
+        self.gl.enable_only(moderngl.NOTHING)
+        self._resolve.set(u_radiance=self._radiance, u_exposure=EXPOSURE, u_height=self.size[1])
+        self._screen.render(moderngl.TRIANGLES, vertices=3)
+        self._display.read_into(self._bytes, components=4)
+        pixels = np.frombuffer(self._bytes, np.uint8).reshape(self.size[1], self.size[0], 4)
+        return np.ascontiguousarray(pixels[..., :3])

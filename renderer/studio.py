@@ -1,0 +1,38 @@
+"""The frame source that uses GL: one context, one scene kept from clip to clip."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from renderer.clip import ClipSpec
+from renderer.context import create_context, identify
+from renderer.frame import Frame, FrameRenderer
+from renderer.scene import Scene
+
+
+class Studio:
+    """Render clips one after the other in this process; close it to give the context back."""
+
+    def __init__(self) -> None:
+        self.gl = create_context()
+        identity = identify(self.gl)
+        self.gl_renderer = identity.renderer
+        self.gl_version = identity.version
+        self._scene: Scene | None = None
+
+    def renderer(self, spec: ClipSpec) -> FrameRenderer:
+        """Return a renderer of one clip's frames, in the last clip's scene where it fits."""
+        renderer = FrameRenderer(self.gl, spec, scene=self._scene)
+        self._scene = renderer.scene
+        return renderer
+
+    def frames(self, spec: ClipSpec) -> Iterator[Frame]:
+        """Yield the clip's frames in order."""
+        renderer = self.renderer(spec)
+        for number in range(spec.frame_count):
+            yield renderer.render_number(number)
+
+    def close(self) -> None:
+        """Release the context and all that lives in it."""
+        self._scene = None
+        self.gl.release()

@@ -1,0 +1,126 @@
+"""The batch: nothing is rendered twice, a kill costs one clip at most."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from renderer.batch import render_clip, render_clips
+from renderer.clip import ClipSpec
+from renderer.detail import Detail
+from renderer.manifest import MANIFEST_NAME, read_manifest
+
+SPEC = ClipSpec(
+    left=Detail.uniform("low"), right=Detail.uniform("ultra"), width=96, height=64, duration_s=0.4
+)
+
+
+@dataclass(frozen=True)
+class Picture:
+    pixels: np.ndarray
+    visible_px: tuple[int, int]
+
+
+@dataclass
+class Pattern:
+    """A source of moving gradients that counts what it was asked for."""
+
+    gl_renderer: str = "pattern"
+    gl_version: str = "1"
+    asked: list[str] = field(default_factory=list)
+
+    def frames(self, spec: ClipSpec) -> Iterator[Picture]:
+        self.asked.append(spec.clip_id)
+        y, x = np.mgrid[: spec.height, : spec.width]
+        for number in range(spec.frame_count):
+            level = np.stack([x + number, y + spec.iris_seed, x + y], axis=-1) % 200
+            yield Picture(level.astype(np.uint8), (number, 2 * number))
+
+
+def test_a_clip_is_rendered_once_and_described_whole(tmp_path: Path) -> None:
+    source = Pattern()
+    first = render_clip(SPEC, tmp_path, source=source)
+    again = render_clip(SPEC, tmp_path, source=source)
+    assert again == first
+    assert source.asked == [SPEC.clip_id]
+    assert first.clip_spec == SPEC
+    assert (tmp_path / first.file).stat().st_size == first.file_bytes
+    assert first.visible_px == [[n, 2 * n] for n in range(SPEC.frame_count)]
+    assert len(first.iris_px) == SPEC.frame_count == first.frame_count
+    assert min(first.psnr_db) > 30
+    assert min(first.ssim) > 0.9
+
+
+def test_the_manifest_proves_equal_frames(tmp_path: Path) -> None:
+    one = render_clip(SPEC, tmp_path / "a", source=Pattern())
+    two = render_clip(SPEC, tmp_path / "b", source=Pattern())
+    other = render_clip(replace(SPEC, iris_seed=9), tmp_path / "b", source=Pattern())
+    assert (one.raw_sha256, one.file_sha256) == (two.raw_sha256, two.file_sha256)
+    assert other.raw_sha256 != one.raw_sha256
+
+
+def test_a_lost_or_cut_file_is_rendered_again(tmp_path: Path) -> None:
+    source = Pattern()
+    record = render_clip(SPEC, tmp_path, source=source)
+    (tmp_path / record.file).write_bytes(b"cut")
+    assert render_clip(SPEC, tmp_path, source=source) == replace(
+        record,
+        frame_ms_median=pytest.approx(record.frame_ms_median, abs=1e3),
+        render_s=pytest.approx(record.render_s, abs=1e3),
+    )
+    assert len(source.asked) == 2
+
+
+def test_a_damaged_manifest_is_refused_by_name(tmp_path: Path) -> None:
+    (tmp_path / MANIFEST_NAME).write_text("{not json")
+    with pytest.raises(ValueError, match=r"manifest\.json: not a manifest of schema 1"):
+        render_clip(SPEC, tmp_path, source=Pattern())
+
+
+KILLED = """
+import os, signal, sys
+sys.path.insert(0, sys.argv[2])
+from test_batch import SPEC, Pattern, render_clips, replace
+from pathlib import Path
+class Dying(Pattern):
+    def frames(self, spec):
+        for number, frame in enumerate(super().frames(spec)):
+            if len(self.asked) == 2 and number == 5:
+                os.kill(os.getpid(), signal.SIGKILL)
+            yield frame
+render_clips([SPEC, replace(SPEC, iris_seed=2), replace(SPEC, iris_seed=3)], Path(sys.argv[1]),
+             source=Dying())
+"""
+
+
+def test_after_kill_9_the_batch_resumes_and_keeps_what_was_done(tmp_path: Path) -> None:
+    here = Path(__file__).parent
+    killed = subprocess.run(
+        [sys.executable, "-c", KILLED, str(tmp_path), str(here)],
+        env=os.environ | {"PYTHONPATH": str(here.parents[1])},
+        check=False,
+    )
+    assert killed.returncode == -signal.SIGKILL
+    assert list(read_manifest(tmp_path).clips) == [SPEC.clip_id]
+    assert list(tmp_path.glob(".*.part.mp4"))
+    source = Pattern()
+    specs = [SPEC, replace(SPEC, iris_seed=2), replace(SPEC, iris_seed=3)]
+    heard: list[tuple[int, float]] = []
+    records = render_clips(
+        specs, tmp_path, source=source, progress=lambda n, s: heard.append((n, s))
+    )
+    assert source.asked == [spec.clip_id for spec in specs[1:]]
+    assert [record.clip_id for record in records] == [spec.clip_id for spec in specs]
+    assert not list(tmp_path.glob(".*.part.mp4"))
+    assert heard[0] == (0, 1.0)
+    assert heard[-1] == (2, 1.0)
+    assert len(json.loads((tmp_path / MANIFEST_NAME).read_text())["clips"]) == 3

@@ -1,0 +1,71 @@
+"""Shader assembly: constants choose, errors name our files, uniforms are checked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import moderngl
+import numpy as np
+import pytest
+
+from renderer import program
+from renderer.detail import Detail
+
+VERTEX = "void main() { gl_Position = vec4(0.0); }\n"
+
+
+@pytest.fixture
+def shaders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(program, "SHADERS", tmp_path)
+    (tmp_path / "v.vert").write_text(VERTEX)
+    return tmp_path
+
+
+def test_includes_nest_and_each_file_is_read_once(shaders: Path) -> None:
+    (shaders / "a.glsl").write_text('#include "c.glsl"\nfloat a() { return c(); }\n')
+    (shaders / "b.glsl").write_text('#include "c.glsl"\nfloat b() { return c(); }\n')
+    (shaders / "c.glsl").write_text("float c() { return 1.0; }\n")
+    (shaders / "f.frag").write_text('#include "a.glsl"\n#include "b.glsl"\nvoid main() {}\n')
+    source = program.assemble("f.frag")
+    assert source.files == ["f.frag", "a.glsl", "c.glsl", "b.glsl"]
+    assert source.text.count("float c()") == 1
+
+
+def test_a_missing_include_names_the_line_that_asks_for_it(shaders: Path) -> None:
+    (shaders / "f.frag").write_text('\n#include "gone.glsl"\nvoid main() {}\n')
+    with pytest.raises(FileNotFoundError, match=r"f\.frag:2: no shader file gone\.glsl"):
+        program.assemble("f.frag")
+
+
+def test_a_compile_error_names_our_file_and_line(gl: moderngl.Context, shaders: Path) -> None:
+    (shaders / "a.glsl").write_text("float a() {\n    return missing;\n}\n")
+    (shaders / "f.frag").write_text(
+        '#include "a.glsl"\nout vec4 o;\nvoid main() { o = vec4(a()); }\n'
+    )
+    with pytest.raises(RuntimeError, match=r"a\.glsl:2"):
+        program.build_program(gl, "v.vert", fragment="f.frag")
+
+
+def test_a_misspelt_level_fails_to_compile(gl: moderngl.Context, shaders: Path) -> None:
+    (shaders / "f.frag").write_text(
+        "out vec4 o;\nvoid main() { o = vec4(REFLECTION >= HIHG ? 1.0 : 0.0); }\n"
+    )
+    constants = program.detail_constants(Detail.uniform("high"))
+    with pytest.raises(RuntimeError, match="HIHG"):
+        program.build_program(gl, "v.vert", fragment="f.frag", constants=constants)
+
+
+def test_a_uniform_of_an_unselected_level_is_skipped_and_an_unknown_one_refused(
+    gl: moderngl.Context, shaders: Path
+) -> None:
+    (shaders / "f.frag").write_text(
+        "uniform float u_ior;\nuniform mat4 u_turn;\nout vec4 o;\n"
+        "void main() { o = u_turn[0]; if (REFRACTION >= HIGH) o *= u_ior; }\n"
+    )
+    for level, active in (("medium", False), ("high", True)):
+        constants = program.detail_constants(Detail.uniform(level))
+        built = program.build_program(gl, "v.vert", fragment="f.frag", constants=constants)
+        built.set(u_ior=1.336, u_turn=np.eye(4))
+        assert built.is_active("u_ior") is active
+        with pytest.raises(KeyError, match="u_iro: no shader of this program declares"):
+            built.set(u_iro=1.0)
