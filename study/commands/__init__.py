@@ -1,0 +1,1 @@
+"""The commands of ``ocularist``, one module each. Importing one loads nothing heavy."""

@@ -1,0 +1,30 @@
+"""Which errors are the user's to mend, and how they are told: a line each, no traceback."""
+
+from __future__ import annotations
+
+from typing import Final
+
+
+class CommandError(Exception):
+    """A command cannot go on; the message says why and what to do."""
+
+
+# What our own modules raise with a message written for users: ValueError for input that does not
+# fit, OSError for files and ports, RuntimeError for a missing driver, ImportError for a part that
+# this machine was set up without. Anything else is our mistake and shows its traceback.
+USER_ERRORS: Final = (CommandError, ValueError, OSError, RuntimeError, ImportError)
+
+
+def one_line(place: str, error: Exception) -> str:
+    """Write an error as ``place: message``, one line per fault that the message holds."""
+    return "\n".join(f"{place}: {line}" for line in message_of(error).splitlines())
+
+
+def message_of(error: Exception) -> str:
+    """Return the words of an error, completed where Python's own say too little."""
+    if isinstance(error, ImportError) and error.name:
+        package = error.name.partition(".")[0]
+        return f"needs {package}, which is not installed here; pip install {package}"
+    if isinstance(error, OSError) and error.strerror and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return str(error) or type(error).__name__

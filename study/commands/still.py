@@ -1,0 +1,213 @@
+"""``ocularist still``: one frame of any pair of eyes, without a study."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from study.commands.errors import CommandError
+from study.commands.options import count, reading, size
+
+if TYPE_CHECKING:
+    from renderer.clip import ClipSpec
+    from renderer.detail import Detail
+
+HELP = "render one frame"
+DESCRIPTION = (
+    "Render one frame of a pair of eyes. Left and right are the viewer's, as seen on the screen. "
+    "Every effect can be set on its own (--effect reflection=low, --effect left.caustics=off) or "
+    "shown alone (--only-effect caustics)."
+)
+SIDES = ("left", "right")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add this command's arguments."""
+    from renderer.clip import CROWDS, DISTANCES, PRESETS
+    from renderer.detail import LEVELS
+
+    levels = ", ".join(LEVELS)
+    parser.add_argument(
+        "--distance",
+        choices=DISTANCES,
+        default="macroscopic",
+        help="viewing distance (default: %(default)s)",
+    )
+    for side in SIDES:
+        parser.add_argument(
+            f"--{side}",
+            choices=LEVELS,
+            default="ultra",
+            metavar="LOD",
+            help=f"LoD of the {side} eye: {levels} (default: %(default)s)",
+        )
+    parser.add_argument(
+        "--effect",
+        action="append",
+        type=effect_level,
+        default=[],
+        metavar="NAME=LEVEL",
+        help="set one effect's level in both eyes, or in one: left.NAME=LEVEL; repeatable",
+    )
+    parser.add_argument(
+        "--only-effect",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="keep this effect and switch the others off; repeatable",
+    )
+    parser.add_argument(
+        "--azimuth",
+        type=float,
+        default=0.0,
+        metavar="DEG",
+        help="camera to the viewer's right of the face, in degrees (default: %(default)g)",
+    )
+    parser.add_argument(
+        "--elevation", type=float, default=0.0, metavar="DEG", help="camera above the eyes"
+    )
+    parser.add_argument(
+        "--gaze",
+        nargs=2,
+        type=float,
+        default=(0.0, 0.0),
+        metavar=("YAW", "PITCH"),
+        help="direction of both eyes in degrees, to the viewer's right and up",
+    )
+    parser.add_argument(
+        "--iris",
+        type=iris,
+        default={},
+        metavar="SEED|COLOUR|SEED:COLOUR",
+        help="which iris, such as 7, brown or 7:brown",
+    )
+    parser.add_argument("--pupil", type=float, metavar="MM", help="diameter of the pupil in mm")
+    parser.add_argument(
+        "--sun",
+        nargs=2,
+        type=float,
+        metavar=("AZIMUTH", "ELEVATION"),
+        help="direction of the sun in degrees",
+    )
+    parser.add_argument(
+        "--crowd", type=int, choices=CROWDS, help="number of other characters in the scene"
+    )
+    parser.add_argument("--preset", choices=PRESETS, help="how effects are balanced")
+    parser.add_argument(
+        "--frame", type=count, metavar="N", help="the N-th frame of the clip instead of --azimuth"
+    )
+    parser.add_argument(
+        "--size", type=size, default=(1920, 1080), metavar="WIDTHxHEIGHT", help="picture size"
+    )
+    parser.add_argument("--wireframe", action="store_true", help="draw the eyes' meshes as lines")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("still.png"),
+        metavar="FILE.png",
+        help="where to write the picture (default: %(default)s)",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Render the frame and write it."""
+    if options.out.suffix != ".png":
+        raise CommandError(f'{options.out}: unknown kind of picture "{options.out.suffix}"; .png')
+    spec = spec_of(options)
+
+    from PIL import Image
+
+    from renderer.still import render_still
+
+    azimuth_deg, time_s = options.azimuth, 0.0
+    if options.frame is not None:
+        azimuth_deg, time_s = spec.azimuth_deg(options.frame - 1), spec.time_s(options.frame - 1)
+    pixels = render_still(
+        spec,
+        azimuth_deg,
+        elevation_deg=options.elevation,
+        time_s=time_s,
+        wireframe=options.wireframe,
+    )
+    options.out.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(pixels).save(options.out)
+    print(options.out)
+    return 0
+
+
+def spec_of(options: argparse.Namespace) -> ClipSpec:
+    """Return the spec that the options describe; raises ValueError for what no clip accepts."""
+    from renderer.clip import ClipSpec
+
+    width, height = options.size
+    optional: dict[str, Any] = {
+        "pupil_mm": options.pupil,
+        "crowd": options.crowd,
+        "preset": options.preset,
+    }
+    if options.sun:
+        optional["sun_azimuth_deg"], optional["sun_elevation_deg"] = options.sun
+    spec = ClipSpec(
+        left=detail_of(options.left, "left", options.effect, options.only_effect),
+        right=detail_of(options.right, "right", options.effect, options.only_effect),
+        distance=options.distance,
+        width=width,
+        height=height,
+        gaze_yaw_deg=options.gaze[0],
+        gaze_pitch_deg=options.gaze[1],
+    )
+    given = {name: value for name, value in optional.items() if value is not None}
+    return replace(spec, **options.iris, **given)
+
+
+def detail_of(
+    lod: str,
+    side: str,
+    effects: Sequence[tuple[tuple[str, ...], str, str]],
+    only: Sequence[str],
+) -> Detail:
+    """Return one eye's levels: a LoD, some effects at other levels, then those to keep."""
+    from renderer.detail import Detail
+
+    levels = {name: level for sides, name, level in effects if side in sides}
+    detail = Detail.uniform(lod).with_levels(**levels)
+    if not only:
+        return detail
+    kept = [detail.only(name).levels()[name] for name in only]
+    return Detail(**dict(zip(only, kept, strict=True)))
+
+
+@reading
+def effect_level(text: str) -> tuple[tuple[str, ...], str, str]:
+    """Read ``reflection=low`` or ``left.reflection=low``: sides, effect, level."""
+    from renderer.detail import check_effect, check_level
+
+    match = re.fullmatch(r"(?:(left|right)\.)?([a-z]+)=([a-z]+)", text)
+    if not match:
+        raise ValueError(
+            f'"{text}" is no effect with a level; write NAME=LEVEL, as in reflection=low, or '
+            "left.NAME=LEVEL"
+        )
+    side, effect, level = match.groups()
+    check_effect(effect)
+    check_level(effect, level)
+    return (side,) if side else SIDES, effect, level
+
+
+@reading
+def iris(text: str) -> dict[str, Any]:
+    """Read ``7``, ``brown`` or ``7:brown`` as the fields of a clip's spec."""
+    from renderer.clip import IRIS_COLOURS
+
+    seed, _, colour = text.partition(":") if ":" in text or text.isdecimal() else ("", "", text)
+    if (seed and not seed.isdecimal()) or (colour and colour not in IRIS_COLOURS):
+        raise ValueError(
+            f'"{text}" is no iris; write a seed, a colour or SEED:COLOUR, with a colour of '
+            + ", ".join(IRIS_COLOURS)
+        )
+    fields: dict[str, Any] = {"iris_colour": colour} if colour else {}
+    return fields | ({"iris_seed": int(seed)} if seed else {})
