@@ -1,0 +1,1 @@
+"""Study data: database, events, jobs, export. The only place that speaks SQL."""

@@ -1,0 +1,95 @@
+"""Answers to a trial's questions: stored when given, complete when the questionnaire is finished.
+
+While a trial is open the last answer to each question counts. Once it is complete its answers are
+fixed: what comes later is kept as an amendment, for the record, and does not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sqlalchemy.orm import Session
+
+from study.data import completion, events
+from study.data.database import Database
+from study.data.participants import Participant, locked, touch
+from study.data.refusals import NotWatchedError
+from study.data.schema import ParticipantRow, TrialRow
+from study.data.studies import by_id
+from study.data.trials import AMENDED, ANSWERED, Trial, trials_of
+from study.data.views import check_reached, start
+from study.design.definition import StudyDefinition
+from study.design.questions import Value, read_answers
+
+
+@dataclass(frozen=True)
+class Stored:
+    """What became of an answer: added now, kept as a mere amendment, trial complete after it."""
+
+    new: bool
+    is_amendment: bool
+    trial_complete: bool
+
+
+def store(
+    db: Database,
+    participant: Participant,
+    position: int,
+    given: Mapping[str, object],
+    *,
+    key: str,
+    is_final: bool = False,
+    response_ms: int | None = None,
+) -> Stored:
+    """Store answers to the trial at ``position``, as a form or script gives them.
+
+    ``is_final`` finishes the questionnaire: every question not answered is stored as missing, and
+    the trial is complete. ``response_ms`` counts from the clip's first frame.
+    Raises AnswerError (nothing is stored then), NotReachedError for a trial that lies ahead,
+    NotWatchedError if ``is_final`` comes before the clip was watched as often as the study asks.
+    """
+    definition = by_id(db, participant.study_id).definition
+    with db.writing() as session:
+        row = locked(session, participant)
+        trial = events.trial_row(session, row.id, position)
+        mine = trials_of(session, row.id)
+        state = next(t for t in mine if t.position == position)
+        if events.is_known(session, row, key):
+            return Stored(new=False, is_amendment=False, trial_complete=state.is_complete)
+        check_reached(mine, position)
+        answers = _read(definition, state, given, is_final=is_final)
+        start(trial, db)
+        is_final = is_final and not state.is_complete
+        payload = {"answers": answers, "is_final": is_final, "response_ms": response_ms}
+        kind = AMENDED if state.is_complete else ANSWERED
+        events.add(session, row, key=key, kind=kind, payload=payload, trial=trial, now=db.now())
+        if is_final:
+            _finish(db, session, row, trial)
+        return Stored(
+            new=True,
+            is_amendment=state.is_complete,
+            trial_complete=is_final or state.is_complete,
+        )
+
+
+def _read(
+    definition: StudyDefinition, state: Trial, given: Mapping[str, object], *, is_final: bool
+) -> dict[str, Value | None]:
+    """Return the answers to store: those given, and when finishing all others as they stand."""
+    if not is_final:
+        return read_answers(definition.questions, given, is_final=False)
+    needed = definition.order.min_views
+    if state.views < needed:
+        raise NotWatchedError(
+            f"the clip has to be watched to the end {needed} x first; so far {state.views} x"
+        )
+    every = dict.fromkeys(question.id for question in definition.questions)
+    return read_answers(definition.questions, {**every, **state.answers, **given})
+
+
+def _finish(db: Database, session: Session, row: ParticipantRow, trial: TrialRow) -> None:
+    trial.completed_at = db.now()
+    trial.session_id = touch(session, row, db.now()).id
+    session.flush()
+    completion.complete(db, session, row)

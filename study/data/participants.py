@@ -1,0 +1,201 @@
+"""Participants: enrolled with a secret token, known by a random pseudonym, erased on request."""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any, Final
+
+import numpy as np
+from sqlalchemy import delete, func, select
+from sqlalchemy.orm import Session
+
+from study.data.database import Database
+from study.data.refusals import WithdrawnError
+from study.data.schema import EventRow, ParticipantRow, SessionRow, TrialRow
+from study.data.studies import Study
+
+IDLE: Final = timedelta(minutes=30)
+"""A sitting ends, and an arm's lease runs out, after this long without a sign of life."""
+SEEN_AGAIN: Final = timedelta(seconds=15)  # do not write "still here" more often than this
+_ALPHABET: Final = "23456789abcdefghjkmnpqrstvwxyz"  # nothing that reads like something else
+
+
+@dataclass(frozen=True)
+class Participant:
+    """A participant as of the moment they were read."""
+
+    id: int
+    public_id: str
+    study_id: int
+    simulated: bool
+    language: str
+    seed: int
+    recruited_by: str
+    size: str | None
+    orbit_direction: str | None
+    created_at: datetime
+    last_seen_at: datetime
+    completed_at: datetime | None
+    withdrawn_at: datetime | None
+
+
+@dataclass(frozen=True)
+class Enrolment:
+    """A new participant and the token that proves who they are; only its hash is stored."""
+
+    participant: Participant
+    token: str
+
+
+def enrol(
+    db: Database,
+    study: Study,
+    *,
+    simulated: bool = False,
+    rng: np.random.Generator | None = None,
+    language: str | None = None,
+    recruited_by: str = "link",
+    device: Mapping[str, Any] | None = None,
+) -> Enrolment:
+    """Add a participant. ``device`` describes screen and browser; the table's column names are
+    ``screen_width``, ``screen_height``, ``pixel_ratio`` and ``user_agent_family``.
+
+    With ``rng`` pseudonym and seed can be repeated; the token never can.
+    """
+    drawn = rng or np.random.default_rng(secrets.randbits(128))
+    token = secrets.token_urlsafe(32)
+    now = db.now()
+    with db.writing() as session:
+        row = ParticipantRow(
+            study_id=study.id,
+            public_id=_free_pseudonym(session, drawn),
+            token_hash=_hash(token),
+            simulated=simulated,
+            language=language or study.definition.language,
+            seed=int(drawn.integers(2**62)),
+            recruited_by=recruited_by[:60],
+            created_at=now,
+            last_seen_at=now,
+        )
+        session.add(row)
+        session.flush()
+        _open_session(session, row, now, device or {}, number=1)
+        return Enrolment(record_of(row), token)
+
+
+def by_token(db: Database, token: str) -> Participant | None:
+    """Return whom a token belongs to, or None. WithdrawnError participants are returned as such."""
+    with db.reading() as session:
+        row = session.scalar(
+            select(ParticipantRow).where(ParticipantRow.token_hash == _hash(token))
+        )
+        return None if row is None else record_of(row)
+
+
+def by_public_id(db: Database, study: Study, public_id: str) -> Participant | None:
+    """Return a participant of a study by pseudonym, or None."""
+    with db.reading() as session:
+        row = session.scalar(
+            select(ParticipantRow).where(
+                ParticipantRow.study_id == study.id, ParticipantRow.public_id == public_id
+            )
+        )
+        return None if row is None else record_of(row)
+
+
+def seen(
+    db: Database, participant: Participant, *, device: Mapping[str, Any] | None = None
+) -> Participant:
+    """Note that the participant is here: keeps sitting and lease alive, or opens a new sitting.
+
+    Cheap to call with every request: it writes at most every 15 seconds unless ``device`` is given.
+    """
+    now = db.now()
+    if device is None and now - participant.last_seen_at < SEEN_AGAIN:
+        return participant
+    with db.writing() as session:
+        row = locked(session, participant)
+        sitting = touch(session, row, now)
+        if device is not None:
+            sitting.device = {**sitting.device, **device}
+        return record_of(row)
+
+
+def withdraw(db: Database, participant: Participant) -> None:
+    """Erase everything about a participant but the dated fact that someone withdrew."""
+    with db.writing() as session:
+        row = session.get_one(ParticipantRow, participant.id, with_for_update=True)
+        if row.withdrawn_at is not None:
+            return
+        for table in (EventRow, TrialRow, SessionRow):
+            session.execute(delete(table).where(table.participant_id == row.id))
+        row.withdrawn_at = db.now()
+        row.seed, row.language, row.recruited_by = 0, "", ""
+        for name in _ERASED:
+            setattr(row, name, None)
+
+
+_ERASED: Final = (
+    *("size", "orbit_direction", "lease_until", "completion_code", "completed_at"),
+    *("consented_at", "about_at", "instructed_at", "begun_at"),
+)
+
+
+def locked(session: Session, participant: Participant) -> ParticipantRow:
+    """Return a participant's row for writing; others who write about them wait.
+
+    Raises WithdrawnError for someone who has withdrawn.
+    """
+    row = session.get_one(ParticipantRow, participant.id, with_for_update=True)
+    if row.withdrawn_at is not None:
+        raise WithdrawnError("this participant has withdrawn; nothing more is stored")
+    return row
+
+
+def touch(session: Session, row: ParticipantRow, now: datetime) -> SessionRow:
+    """Keep the participant's sitting and lease alive; open a new sitting after a pause."""
+    sitting = session.scalars(
+        select(SessionRow)
+        .where(SessionRow.participant_id == row.id)
+        .order_by(SessionRow.number.desc())
+        .limit(1)
+    ).one()
+    if now - sitting.last_seen_at > IDLE:
+        sitting = _open_session(session, row, now, sitting.device, number=sitting.number + 1)
+    sitting.last_seen_at = row.last_seen_at = now
+    if row.size is not None and row.completed_at is None:
+        row.lease_until = now + IDLE
+    return sitting
+
+
+def record_of(row: ParticipantRow) -> Participant:
+    """Return a row as the record that pages work with."""
+    return Participant(**{name: getattr(row, name) for name in Participant.__dataclass_fields__})
+
+
+def _open_session(
+    session: Session, row: ParticipantRow, now: datetime, device: Mapping[str, Any], *, number: int
+) -> SessionRow:
+    sitting = SessionRow(
+        participant_id=row.id, number=number, device=dict(device), started_at=now, last_seen_at=now
+    )
+    session.add(sitting)
+    session.flush()
+    return sitting
+
+
+def _free_pseudonym(session: Session, rng: np.random.Generator) -> str:
+    while True:
+        name = "p-" + "".join(_ALPHABET[i] for i in rng.integers(len(_ALPHABET), size=8))
+        taken = select(func.count()).where(ParticipantRow.public_id == name)
+        if not session.scalar(taken):
+            return name
+
+
+def _hash(token: str) -> str:
+    # A token has 256 random bits: a plain hash cannot be reversed, and it can be looked up.
+    return hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()

@@ -1,0 +1,146 @@
+"""Where a participant is. The server knows, so reload, back and coming back all lead there.
+
+The steps before the trials are stamps on the participant, set in the transaction that records the
+event; after that the first trial that is not complete is the current one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+
+from study.data import events, trials
+from study.data.database import Database
+from study.data.events import Recorded
+from study.data.participants import Participant, locked
+from study.data.refusals import NotReachedError
+from study.data.schema import ParticipantRow
+from study.data.studies import by_id
+from study.data.trials import Trial
+from study.design.definition import StudyDefinition
+from study.design.questions import read_answers
+
+StepName = Literal[
+    "consent",
+    "about",
+    "instructions",
+    "preparing",
+    "practice",
+    "trial",
+    "thanks",
+    "withdrawn",
+]
+STEPS: Final[tuple[StepName, ...]] = (
+    *("consent", "about", "instructions", "preparing", "practice", "trial", "thanks"),
+    "withdrawn",
+)
+CONSENTED, ABOUT, INSTRUCTED, BEGUN = "consented", "about", "instructed", "begun"
+
+
+@dataclass(frozen=True)
+class Step:
+    """What to show now; at "practice" and "trial" the ``number``-th trial of ``total``."""
+
+    name: StepName
+    trial: Trial | None = None
+    number: int = 0
+    total: int = 0
+
+
+def current_step(db: Database, participant: Participant) -> Step:
+    """Return where a participant is, read from the database."""
+    definition = by_id(db, participant.study_id).definition
+    with db.reading() as session:
+        row = session.get_one(ParticipantRow, participant.id)
+        early = early_step(row, definition)
+        if early is not None:
+            return Step(early)
+        mine = trials.trials_of(session, row.id)
+    open_trial = next((trial for trial in mine if not trial.is_complete), None)
+    if open_trial is None:
+        return Step("thanks")
+    alike = [trial for trial in mine if trial.is_practice == open_trial.is_practice]
+    name: StepName = "practice" if open_trial.is_practice else "trial"
+    return Step(name, open_trial, open_trial.number, len(alike))
+
+
+def early_step(row: ParticipantRow, definition: StudyDefinition) -> StepName | None:
+    """Return the step of someone who has not begun the trials, or None."""
+    if row.withdrawn_at is not None:
+        return "withdrawn"
+    if row.consented_at is None:
+        return "consent"
+    if row.about_at is None and definition.about:
+        return "about"
+    if row.instructed_at is None:
+        return "instructions"
+    return "preparing" if row.begun_at is None else None
+
+
+def give_consent(
+    db: Database, participant: Participant, *, key: str, payload: Mapping[str, Any] | None = None
+) -> Recorded:
+    """Record that the participant agrees to the consent text of their study's version."""
+    consent = by_id(db, participant.study_id).definition.consent
+    kept = {**(payload or {}), "consent_version": consent.version}
+    with db.writing() as session:
+        row = locked(session, participant)
+        now = db.now()
+        row.consented_at = row.consented_at or now
+        return Recorded(events.add(session, row, key=key, kind=CONSENTED, payload=kept, now=now))
+
+
+def store_about(
+    db: Database, participant: Participant, given: Mapping[str, object], *, key: str
+) -> Recorded:
+    """Store the answers about the participant; sent again with another key, the later ones count.
+
+    Raises AnswerError naming every answer that cannot be stored, NotReachedError before consent.
+    """
+    definition = by_id(db, participant.study_id).definition
+    with db.writing() as session:
+        row = locked(session, participant)
+        if row.consented_at is None:
+            raise NotReachedError("the questions about you come after the consent")
+        if events.is_known(session, row, key):
+            return Recorded(False)
+        answers = read_answers(definition.about, given)
+        now = db.now()
+        row.about_at = row.about_at or now
+        payload = {"answers": answers}
+        return Recorded(events.add(session, row, key=key, kind=ABOUT, payload=payload, now=now))
+
+
+def finish_instructions(db: Database, participant: Participant, *, key: str) -> Recorded:
+    """Record that the participant has read the instructions."""
+    definition = by_id(db, participant.study_id).definition
+    with db.writing() as session:
+        row = locked(session, participant)
+        if early_step(row, definition) in ("consent", "about"):
+            raise NotReachedError(
+                "the instructions come after the consent and the questions about you"
+            )
+        now = db.now()
+        row.instructed_at = row.instructed_at or now
+        return Recorded(events.add(session, row, key=key, kind=INSTRUCTED, payload={}, now=now))
+
+
+def begin(
+    db: Database, participant: Participant, *, key: str, payload: Mapping[str, Any] | None = None
+) -> Recorded:
+    """Start the trials: lays them out from the participant's seed and arm (``arms.assign``).
+
+    Raises NotReachedError while there is no arm or an earlier step is open.
+    """
+    definition = by_id(db, participant.study_id).definition
+    with db.writing() as session:
+        row = locked(session, participant)
+        if early_step(row, definition) not in ("preparing", None) or row.size is None:
+            raise NotReachedError("the clips come after the instructions, once they are ready")
+        now = db.now()
+        row.begun_at = row.begun_at or now
+        trials.lay_out(session, row, definition)
+        return Recorded(
+            events.add(session, row, key=key, kind=BEGUN, payload=payload or {}, now=now)
+        )

@@ -1,0 +1,202 @@
+"""Researchers: accounts of the dashboard, patient with typing errors and slow with guessers.
+
+Passwords are kept as argon2id hashes. What a researcher does that others must see later, above all
+switching the results on, is logged.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from typing import Any, Final
+
+from argon2 import PasswordHasher
+from argon2.exceptions import InvalidHashError, VerificationError
+from sqlalchemy import ColumnElement, delete, func, select
+
+from study.data.database import Database
+from study.data.refusals import RefusedError
+from study.data.schema import ResearcherLogRow, ResearcherRow, SignInAttemptRow
+from study.data.studies import Study
+
+MIN_PASSWORD_CHARS: Final = 12
+MAX_PASSWORD_CHARS: Final = 500
+WINDOW: Final = timedelta(minutes=15)
+FREE_ATTEMPTS_PER_NAME: Final = 5
+FREE_ATTEMPTS_PER_ADDRESS: Final = 20
+RESULTS_SHOWN: Final = "results-shown"
+RESULTS_HIDDEN: Final = "results-hidden"
+
+_hasher = PasswordHasher()  # argon2id with the library's parameters (RFC 9106, low memory)
+_NOBODY = _hasher.hash("nobody has this password")
+
+
+class MustWaitError(RefusedError):
+    """Too many failed sign-ins; ``wait_s`` seconds have to pass first."""
+
+    def __init__(self, wait_s: int) -> None:
+        self.wait_s = wait_s
+        super().__init__(f"too many attempts; try again in {math.ceil(wait_s / 60)} minutes")
+
+
+@dataclass(frozen=True)
+class Researcher:
+    """An account."""
+
+    id: int
+    name: str
+
+
+@dataclass(frozen=True)
+class LogEntry:
+    """Something that a researcher did."""
+
+    researcher: str
+    kind: str
+    payload: Mapping[str, Any]
+    created_at: datetime
+
+
+def add(db: Database, name: str, password: str) -> Researcher:
+    """Make an account, or give an existing one a new password."""
+    name = name.strip()
+    if not 0 < len(name) <= 100:
+        raise RefusedError(f"a name has 1 to 100 characters; found {len(name)}")
+    if not MIN_PASSWORD_CHARS <= len(password) <= MAX_PASSWORD_CHARS:
+        raise RefusedError(
+            f"a password has {MIN_PASSWORD_CHARS} to {MAX_PASSWORD_CHARS} characters; "
+            f"found {len(password)}"
+        )
+    hashed = _hasher.hash(password)
+    with db.writing() as session:
+        row = session.scalar(select(ResearcherRow).where(ResearcherRow.name == name))
+        if row is None:
+            row = ResearcherRow(name=name, password_hash=hashed, created_at=db.now())
+            session.add(row)
+        row.password_hash = hashed
+        session.flush()
+        return Researcher(row.id, row.name)
+
+
+def has_any(db: Database) -> bool:
+    """Say whether there is an account at all."""
+    with db.reading() as session:
+        return session.scalar(select(ResearcherRow.id).limit(1)) is not None
+
+
+def by_id(db: Database, researcher_id: int) -> Researcher | None:
+    """Return an account, or None."""
+    with db.reading() as session:
+        row = session.get(ResearcherRow, researcher_id)
+        return None if row is None else Researcher(row.id, row.name)
+
+
+def sign_in(db: Database, name: str, password: str, *, address: str) -> Researcher | None:
+    """Return the account if the password is right, else None. An unknown name takes as long.
+
+    Raises MustWaitError after too many failures for this name or from this address.
+    """
+    name, address = name.strip()[:100], address[:100]
+    wait_s = _wait_s(db, name, address)
+    if wait_s:
+        raise MustWaitError(wait_s)
+    with db.reading() as session:
+        row = session.scalar(select(ResearcherRow).where(ResearcherRow.name == name))
+    is_right = _is_right(_NOBODY if row is None else row.password_hash, password)
+    if row is None or not is_right:
+        with db.writing() as session:
+            session.add(SignInAttemptRow(name=name, address=address, created_at=db.now()))
+        return None
+    with db.writing() as session:
+        session.execute(delete(SignInAttemptRow).where(SignInAttemptRow.name == name))
+        session.execute(
+            delete(SignInAttemptRow).where(SignInAttemptRow.created_at < db.now() - WINDOW)
+        )
+    return Researcher(row.id, row.name)
+
+
+def log(
+    db: Database,
+    researcher: Researcher,
+    kind: str,
+    *,
+    study: Study | None = None,
+    payload: Mapping[str, Any] | None = None,
+) -> None:
+    """Record something that a researcher did."""
+    with db.writing() as session:
+        session.add(
+            ResearcherLogRow(
+                researcher_id=researcher.id,
+                study_id=None if study is None else study.id,
+                kind=kind,
+                payload=dict(payload or {}),
+                created_at=db.now(),
+            )
+        )
+
+
+def show_results(db: Database, researcher: Researcher, study: Study, *, shown: bool) -> None:
+    """Record that a researcher switched a study's results on or off for themselves."""
+    log(db, researcher, RESULTS_SHOWN if shown else RESULTS_HIDDEN, study=study)
+
+
+def sees_results(db: Database, researcher: Researcher, study: Study) -> bool:
+    """Say whether a researcher has the results of a study switched on."""
+    query = (
+        select(ResearcherLogRow.kind)
+        .where(
+            ResearcherLogRow.researcher_id == researcher.id,
+            ResearcherLogRow.study_id == study.id,
+            ResearcherLogRow.kind.in_((RESULTS_SHOWN, RESULTS_HIDDEN)),
+        )
+        .order_by(ResearcherLogRow.id.desc())
+        .limit(1)
+    )
+    with db.reading() as session:
+        return session.scalar(query) == RESULTS_SHOWN
+
+
+def logged(db: Database, study: Study | None = None) -> list[LogEntry]:
+    """Return what researchers did, newest first: everything, or what concerns one study."""
+    query = (
+        select(ResearcherRow.name, ResearcherLogRow)
+        .join(ResearcherRow, ResearcherRow.id == ResearcherLogRow.researcher_id)
+        .order_by(ResearcherLogRow.id.desc())
+    )
+    if study is not None:
+        query = query.where(ResearcherLogRow.study_id == study.id)
+    with db.reading() as session:
+        return [
+            LogEntry(name, row.kind, row.payload, row.created_at)
+            for name, row in session.execute(query)
+        ]
+
+
+def _is_right(hashed: str, password: str) -> bool:
+    try:
+        return len(password) <= MAX_PASSWORD_CHARS and _hasher.verify(hashed, password)
+    except (VerificationError, InvalidHashError):
+        return False
+
+
+def _wait_s(db: Database, name: str, address: str) -> int:
+    """Return how long to wait: until few enough failures lie within the window."""
+    return max(
+        _wait_for(db, SignInAttemptRow.name == name, FREE_ATTEMPTS_PER_NAME),
+        _wait_for(db, SignInAttemptRow.address == address, FREE_ATTEMPTS_PER_ADDRESS),
+    )
+
+
+def _wait_for(db: Database, whose: ColumnElement[bool], free: int) -> int:
+    since = db.now() - WINDOW
+    failures = select(func.count(), func.min(SignInAttemptRow.created_at)).where(
+        whose, SignInAttemptRow.created_at > since
+    )
+    with db.reading() as session:
+        count, first = session.execute(failures).one()
+    if count < free:
+        return 0
+    return max(1, math.ceil((first + WINDOW - db.now()).total_seconds()))

@@ -1,0 +1,192 @@
+"""The tables. Everything else in this package reads and writes through these classes.
+
+Events are the truth about answers and plays: rows are added, never changed. The stamps on a
+participant and a trial are written in the same transaction as the event that they follow from.
+"""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import JSON, BigInteger, ForeignKey, Index, MetaData, String, Text, UniqueConstraint
+from sqlalchemy.engine import Dialect
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy.types import DateTime, TypeDecorator
+
+
+class UtcDateTime(TypeDecorator[datetime]):
+    """A moment in UTC; SQLite forgets time zones, so this puts it back."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002 - SQLAlchemy's signature
+        return None if value is None else value.astimezone(UTC)
+
+    def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002 - SQLAlchemy's signature
+        if value is None:
+            return None
+        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+class Base(DeclarativeBase):
+    """What all tables share."""
+
+    metadata = MetaData(
+        naming_convention={  # fixed names, so that a later migration can change what it finds
+            "ix": "ix_%(table_name)s_%(column_0_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {  # noqa: RUF012 - SQLAlchemy reads a plain class attribute
+        datetime: UtcDateTime(),
+        dict[str, Any]: JSON(),
+    }
+
+
+class StudyRow(Base):
+    """One version of a study; its definition is kept whole, as JSON."""
+
+    __tablename__ = "studies"
+    __table_args__ = (UniqueConstraint("key", "version"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    key: Mapped[str] = mapped_column(String(60))
+    version: Mapped[str] = mapped_column(String(60))
+    title: Mapped[str] = mapped_column(Text)
+    definition: Mapped[str] = mapped_column(Text)
+    definition_hash: Mapped[str] = mapped_column(String(64))
+    created_at: Mapped[datetime]
+
+
+class ParticipantRow(Base):
+    """One participant: who they are to us is a random pseudonym and the hash of their token."""
+
+    __tablename__ = "participants"
+    __table_args__ = (Index("ix_participants_arm", "study_id", "size", "orbit_direction"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    study_id: Mapped[int] = mapped_column(ForeignKey("studies.id"))
+    public_id: Mapped[str] = mapped_column(String(20), unique=True)
+    token_hash: Mapped[str] = mapped_column(String(64), unique=True)
+    simulated: Mapped[bool]
+    language: Mapped[str] = mapped_column(String(20))
+    seed: Mapped[int] = mapped_column(BigInteger)
+    recruited_by: Mapped[str] = mapped_column(String(60))
+    size: Mapped[str | None] = mapped_column(String(20))
+    orbit_direction: Mapped[str | None] = mapped_column(String(20))
+    lease_until: Mapped[datetime | None]
+    created_at: Mapped[datetime]
+    last_seen_at: Mapped[datetime]
+    consented_at: Mapped[datetime | None]
+    about_at: Mapped[datetime | None]
+    instructed_at: Mapped[datetime | None]
+    begun_at: Mapped[datetime | None]
+    completed_at: Mapped[datetime | None]
+    withdrawn_at: Mapped[datetime | None]
+    completion_code: Mapped[str | None] = mapped_column(String(20), unique=True)
+
+
+class SessionRow(Base):
+    """One sitting; a new one begins when a participant comes back after a while."""
+
+    __tablename__ = "sessions"
+    __table_args__ = (UniqueConstraint("participant_id", "number"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    participant_id: Mapped[int] = mapped_column(ForeignKey("participants.id"))
+    number: Mapped[int]
+    device: Mapped[dict[str, Any]]
+    started_at: Mapped[datetime]
+    last_seen_at: Mapped[datetime]
+
+
+class TrialRow(Base):
+    """One clip for one participant: ``clip_id`` names its frames, ``clip`` the file's entry."""
+
+    __tablename__ = "trials"
+    __table_args__ = (UniqueConstraint("participant_id", "position"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    participant_id: Mapped[int] = mapped_column(ForeignKey("participants.id"))
+    position: Mapped[int]
+    number: Mapped[int]
+    is_practice: Mapped[bool]
+    clip: Mapped[str] = mapped_column(String(60))
+    clip_id: Mapped[str] = mapped_column(String(64))
+    session_id: Mapped[int | None] = mapped_column(ForeignKey("sessions.id"))
+    started_at: Mapped[datetime | None]
+    completed_at: Mapped[datetime | None]
+
+
+class EventRow(Base):
+    """Something that happened, added once: ``key`` is the sender's name for it."""
+
+    __tablename__ = "events"
+    __table_args__ = (
+        UniqueConstraint("participant_id", "key"),
+        Index("ix_events_trial_kind", "trial_id", "kind"),
+    )
+    id: Mapped[int] = mapped_column(primary_key=True)
+    participant_id: Mapped[int] = mapped_column(ForeignKey("participants.id"))
+    session_id: Mapped[int | None] = mapped_column(ForeignKey("sessions.id"))
+    trial_id: Mapped[int | None] = mapped_column(ForeignKey("trials.id"))
+    key: Mapped[str] = mapped_column(String(100))
+    kind: Mapped[str] = mapped_column(String(30))
+    payload: Mapped[dict[str, Any]]
+    created_at: Mapped[datetime]
+
+
+class JobRow(Base):
+    """One clip to render; ``priority`` counts up in the order in which clips are needed."""
+
+    __tablename__ = "jobs"
+    __table_args__ = (Index("ix_jobs_state_priority", "state", "priority"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    clip_id: Mapped[str] = mapped_column(String(64), unique=True)
+    spec: Mapped[dict[str, Any]]
+    size: Mapped[str] = mapped_column(String(20))
+    orbit_direction: Mapped[str] = mapped_column(String(20))
+    state: Mapped[str] = mapped_column(String(20))
+    priority: Mapped[int]
+    attempts: Mapped[int]
+    progress: Mapped[float]
+    claimed_by: Mapped[str | None] = mapped_column(String(200))
+    lease_until: Mapped[datetime | None]
+    error: Mapped[str | None] = mapped_column(Text)
+    record: Mapped[dict[str, Any] | None]
+    created_at: Mapped[datetime]
+    started_at: Mapped[datetime | None]
+    finished_at: Mapped[datetime | None]
+
+
+class ResearcherRow(Base):
+    """An account of the dashboard."""
+
+    __tablename__ = "researchers"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(String(100), unique=True)
+    password_hash: Mapped[str] = mapped_column(String(200))
+    created_at: Mapped[datetime]
+
+
+class ResearcherLogRow(Base):
+    """What a researcher did that others must be able to see later: showing results, exporting."""
+
+    __tablename__ = "researcher_log"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    researcher_id: Mapped[int] = mapped_column(ForeignKey("researchers.id"))
+    study_id: Mapped[int | None] = mapped_column(ForeignKey("studies.id"))
+    kind: Mapped[str] = mapped_column(String(30))
+    payload: Mapped[dict[str, Any]]
+    created_at: Mapped[datetime]
+
+
+class SignInAttemptRow(Base):
+    """A failed sign-in; enough of them make the next one wait."""
+
+    __tablename__ = "sign_in_attempts"
+    __table_args__ = (Index("ix_sign_in_attempts_at", "created_at"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(String(100), index=True)
+    address: Mapped[str] = mapped_column(String(100), index=True)
+    created_at: Mapped[datetime]

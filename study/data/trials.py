@@ -1,0 +1,135 @@
+"""Trials: which clip a participant sees at which position, and what has come of it so far."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from datetime import datetime
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from study.data.database import Database
+from study.data.participants import Participant
+from study.data.schema import EventRow, ParticipantRow, TrialRow
+from study.data.studies import by_id
+from study.design.definition import StudyDefinition
+from study.design.parts import read_size
+from study.design.questions import Value
+from study.design.schedule import schedule
+
+ANSWERED = "answered"
+AMENDED = "amended"
+PLAYED = "played"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One trial. ``clip_id`` names the video's file; ``clip`` is the study file's word for it.
+
+    ``views`` counts plays to the end. ``answers`` holds the questions answered so far; a question
+    that was skipped or cleared is None, one never touched is absent.
+    """
+
+    id: int
+    position: int
+    number: int
+    is_practice: bool
+    clip: str
+    clip_id: str
+    started_at: datetime | None
+    completed_at: datetime | None
+    views: int = 0
+    answers: dict[str, Value | None] = field(default_factory=dict)
+
+    @property
+    def is_complete(self) -> bool:
+        """True once its questionnaire was finished."""
+        return self.completed_at is not None
+
+
+def all_trials(db: Database, participant: Participant) -> tuple[Trial, ...]:
+    """Return a participant's trials in order; empty until they have begun."""
+    with db.reading() as session:
+        return trials_of(session, participant.id)
+
+
+def at(db: Database, participant: Participant, position: int) -> Trial | None:
+    """Return the trial at a position, or None."""
+    found = [trial for trial in all_trials(db, participant) if trial.position == position]
+    return found[0] if found else None
+
+
+def trials_of(session: Session, participant_id: int) -> tuple[Trial, ...]:
+    """Read a participant's trials with plays counted and answers folded."""
+    rows = session.scalars(
+        select(TrialRow)
+        .where(TrialRow.participant_id == participant_id)
+        .order_by(TrialRow.position)
+    ).all()
+    events = session.scalars(
+        select(EventRow)
+        .where(EventRow.participant_id == participant_id, EventRow.trial_id.is_not(None))
+        .order_by(EventRow.id)
+    ).all()
+    by_trial: dict[int, list[EventRow]] = {row.id: [] for row in rows}
+    for event in events:
+        by_trial[event.trial_id or 0].append(event)
+    return tuple(trial_of(row, by_trial[row.id]) for row in rows)
+
+
+def trial_of(row: TrialRow, events: Iterable[EventRow]) -> Trial:
+    """Fold a trial's events into its state: the last answer to each question counts.
+
+    Amendments, which came after the trial was complete, are kept as events and do not count.
+    """
+    views = 0
+    answers: dict[str, Value | None] = {}
+    for event in events:
+        if event.kind == PLAYED and event.payload.get("is_complete"):
+            views += 1
+        elif event.kind == ANSWERED:
+            answers.update(event.payload["answers"])
+    return Trial(
+        id=row.id,
+        position=row.position,
+        number=row.number,
+        is_practice=row.is_practice,
+        clip=row.clip,
+        clip_id=row.clip_id,
+        started_at=row.started_at,
+        completed_at=row.completed_at,
+        views=views,
+        answers=answers,
+    )
+
+
+def lay_out(session: Session, row: ParticipantRow, definition: StudyDefinition) -> None:
+    """Write a participant's trials from their seed and arm; does nothing the second time."""
+    has_trials = session.scalar(
+        select(TrialRow.id).where(TrialRow.participant_id == row.id).limit(1)
+    )
+    if has_trials is not None or row.size is None or row.orbit_direction is None:
+        return
+    specs = definition.clip_specs(read_size(row.size), row.orbit_direction)
+    session.add_all(
+        TrialRow(
+            participant_id=row.id,
+            position=trial.position,
+            number=trial.number,
+            is_practice=trial.is_practice,
+            clip=trial.clip.id,
+            clip_id=specs[trial.clip.id].clip_id,
+        )
+        for trial in schedule(definition, row.seed)
+    )
+    session.flush()
+
+
+def clip_ids(db: Database, participant: Participant) -> tuple[str, ...]:
+    """Return the clips that a participant with an arm will see, in order: what to preload."""
+    if participant.size is None or participant.orbit_direction is None:
+        return ()
+    definition = by_id(db, participant.study_id).definition
+    specs = definition.clip_specs(read_size(participant.size), participant.orbit_direction)
+    return tuple(specs[trial.clip.id].clip_id for trial in schedule(definition, participant.seed))
