@@ -107,7 +107,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out",
         type=Path,
-        default=Path("still.png"),
+        default=Path("out/still.png"),
         metavar="FILE.png",
         help="where to write the picture (default: %(default)s)",
     )

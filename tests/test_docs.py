@@ -1,0 +1,84 @@
+"""The documents say what the code says: every column, every key, every link."""
+
+from __future__ import annotations
+
+import re
+import typing
+from collections.abc import Iterator
+from pathlib import Path
+from types import UnionType
+from typing import Any
+
+import pytest
+from pydantic import BaseModel
+
+from analysis import COLUMNS, Column
+from study.design.definition import StudyDefinition
+from study.design.parts import Size
+
+ROOT = Path(__file__).parent.parent
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+
+
+def row_of(column: Column) -> str:
+    """Return the line of docs/tables.md that describes a column."""
+    kind = column.kind + (f", {column.unit}" if column.unit else "")
+    accepted = ", ".join(f"`{choice}`" for choice in column.choices)
+    if column.low is not None or column.high is not None:
+        ends = [f"{end:g}" if end is not None else "" for end in (column.low, column.high)]
+        accepted = f"{ends[0]} to {ends[1]}" if all(ends) else f"from {ends[0]}"
+    return f"| `{column.name}` | {kind} | {column.meaning} | {accepted} |"
+
+
+@pytest.mark.parametrize("table", COLUMNS)
+def test_every_column_is_described_in_its_order(table: str) -> None:
+    text = (ROOT / "docs" / "tables.md").read_text(encoding="utf-8")
+    section = text.split(f"## `{table}.csv`\n")[1].split("\n## ")[0]
+    rows = [line for line in section.splitlines() if line.startswith("| `")]
+    assert rows == [row_of(column) for column in COLUMNS[table]]
+
+
+def models_in(annotation: Any) -> Iterator[type[BaseModel]]:
+    """Yield the models that an annotation mentions, and those inside them."""
+    if typing.get_origin(annotation) in (typing.Union, UnionType, typing.Annotated, tuple, dict):
+        for argument in typing.get_args(annotation):
+            yield from models_in(argument)
+    elif isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        if annotation is not Size:  # which is written as one text, "1280x720"
+            yield annotation
+            for field in annotation.model_fields.values():
+                yield from models_in(field.annotation)
+
+
+def test_every_key_of_a_study_file_is_explained() -> None:
+    text = (ROOT / "docs" / "study-file.md").read_text(encoding="utf-8")
+    explained = set(re.findall(r"^\| `(\w+)` \|", text, flags=re.MULTILINE))
+    keys = {name for model in models_in(StudyDefinition) for name in model.model_fields}
+    assert len(keys) > 50
+    assert explained == keys
+
+
+def links(document: Path) -> list[str]:
+    targets = re.findall(r"\]\(([^)#]+)[^)]*\)", document.read_text(encoding="utf-8"))
+    return [target for target in targets if "://" not in target]
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_every_link_leads_somewhere(document: Path) -> None:
+    assert [target for target in links(document) if not (document.parent / target).exists()] == []
+
+
+def test_every_file_that_the_decisions_name_exists() -> None:
+    text = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"`((?:renderer|study|analysis)/[\w/.]+\.\w+)`", text))
+    assert named
+    assert [name for name in named if not (ROOT / name).is_file()] == []
+
+
+def test_every_command_of_the_readme_exists() -> None:
+    from study.cli import COMMANDS
+
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert list(dict.fromkeys(re.findall(r"^\| `ocularist (\w+)", text, flags=re.MULTILINE))) == [
+        *COMMANDS
+    ]
