@@ -1,0 +1,105 @@
+"""What each LoD costs on the renderer: reads ``bench.json`` and picks the rows that fit a study.
+
+A cost holds for one renderer, one picture size and one number of eyes; these are always named.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import pandas as pd
+
+from analysis.parsing import TableError
+
+_TEXT: Final = ("renderer", "distance")
+_NUMBERS: Final = ("iris_px", "eyes", "ms_median", "ms_mad", "n")
+COLUMNS: Final = ("renderer", "size", "eyes", "distance", "iris_px", "lod", "ms_median", "ms_mad")
+
+
+@dataclass(frozen=True)
+class Costs:
+    """Milliseconds per frame of each LoD at each distance, under one stated condition."""
+
+    table: pd.DataFrame
+    condition: str
+
+    def ms(self, distance: str, lod: str) -> float | None:
+        """Return the median milliseconds per frame, None where it was not measured."""
+        is_wanted = (self.table["distance"] == distance) & (self.table["lod"] == lod)
+        rows = self.table[is_wanted]
+        return float(rows["ms_median"].iloc[0]) if len(rows) else None
+
+
+def read_bench(path: str | Path) -> Costs:
+    """Read the cost of each LoD from ``bench.json``: a list of rows, or an object with ``rows``.
+
+    Of several renderers, sizes and numbers of eyes it takes the largest picture with the most eyes
+    of the renderer named last. Raises TableError with every fault of the file.
+    """
+    place = Path(path)
+    try:
+        content = json.loads(place.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise TableError([f"{place}: {error.strerror}; accepted: bench.json"]) from None
+    except ValueError as error:
+        raise TableError([f"{place.name}: not JSON ({error}); accepted: bench.json"]) from None
+    rows = content.get("rows") if isinstance(content, Mapping) else content
+    if not isinstance(rows, list):
+        raise TableError([f"{place.name}: found no list of rows; accepted: bench.json"])
+    faults = [fault for i, row in enumerate(rows) for fault in _faults(row, f"{place.name}: {i}")]
+    if faults:
+        raise TableError(faults)
+    return _chosen(rows)
+
+
+def _faults(row: object, place: str) -> list[str]:
+    if not isinstance(row, Mapping):
+        return [f'{place}: found "{row}"; accepted: an object']
+    if not row.get("lod"):
+        return []  # the cost of one effect: not part of a LoD's cost
+    faults = [
+        f'{place}.{name}: found "{row.get(name)}"; accepted: some text'
+        for name in _TEXT
+        if not isinstance(row.get(name), str)
+    ]
+    faults += [
+        f'{place}.{name}: found "{row.get(name)}"; accepted: a number of at least 0'
+        for name in _NUMBERS
+        if not _is_measure(row.get(name))
+    ]
+    if row.get("size") is None:
+        faults.append(f'{place}.size: found "None"; accepted: a size like 1920x1080')
+    return faults
+
+
+def _is_measure(value: object) -> bool:
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return is_number and math.isfinite(float(str(value))) and float(str(value)) >= 0
+
+
+def _size(value: Any) -> str:
+    return "x".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def _pixels(size: str) -> int:
+    sides = [int(part) for part in size.split("x") if part.isdigit()]
+    return math.prod(sides) if sides else 0
+
+
+def _chosen(rows: list[dict[str, Any]]) -> Costs:
+    lods = [{**row, "size": _size(row["size"])} for row in rows if row.get("lod")]
+    if not lods:
+        return Costs(pd.DataFrame(columns=list(COLUMNS)), "no LoD was measured")
+    renderer = lods[-1]["renderer"]
+    own = [row for row in lods if row["renderer"] == renderer]
+    size = max((row["size"] for row in own), key=_pixels)
+    eyes = max(row["eyes"] for row in own if row["size"] == size)
+    chosen = [row for row in own if row["size"] == size and row["eyes"] == eyes]
+    table = pd.DataFrame(chosen)[list(COLUMNS)]
+    number = "one eye" if eyes == 1 else f"{eyes:g} eyes"
+    return Costs(table, f"{number}, {size} pixels, {renderer}")

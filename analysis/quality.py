@@ -1,0 +1,118 @@
+"""Is the data good? Missing answers per question, what was left out, and how people used the scale.
+
+Facts only: nobody is excluded here.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import pandas as pd
+
+from analysis.descriptive import answered
+from analysis.reading import Tables
+
+_QUESTIONS: Final = (
+    ("ratings", "rating", "realism of each eye"),
+    ("comparisons", "comparison", "which eye is more realistic"),
+    ("comparisons", "noticed", "anything missing or different"),
+    ("comparisons", "what_differed", "what was different"),
+    ("comparisons", "comments", "other comments"),
+)
+
+
+def missing_answers(tables: Tables) -> pd.DataFrame:
+    """Return, per question, how many answers were asked for and how many are missing.
+
+    Columns: question, column, asked, answered, missing, share (missing). Free text is asked for in
+    every trial but expected in few.
+    """
+    rows = []
+    for table, column, question in _QUESTIONS:
+        frame: pd.DataFrame = getattr(tables, table)
+        cells = frame.loc[~frame["is_practice"], column]
+        missing = int(cells.isna().sum())
+        row = {"question": question, "column": column, "asked": len(cells)}
+        row |= {"answered": len(cells) - missing, "missing": missing}
+        rows.append(row | {"share": missing / len(cells) if len(cells) else float("nan")})
+    return pd.DataFrame(rows)
+
+
+def people_overview(tables: Tables) -> pd.DataFrame:
+    """Return one row per participant: how much was answered and how the scale was used.
+
+    Columns: participant, ratings, missing, mean, lowest and highest (ratings at the ends of the
+    scale), distinct (different ratings used), median_response_s.
+    """
+    ratings = tables.ratings[~tables.ratings["is_practice"]]
+    low, high = tables.scale
+    rows = []
+    for person, own in ratings.groupby("participant", sort=True):
+        given = answered(own)["rating"]
+        row = {"participant": person, "ratings": len(given), "missing": len(own) - len(given)}
+        row |= {"mean": given.mean() if len(given) else float("nan")}
+        row |= {"lowest": int((given == low).sum()), "highest": int((given == high).sum())}
+        seconds = own["response_ms"].astype("Float64").median() / 1000
+        row |= {"distinct": given.nunique(), "median_response_s": seconds}
+        rows.append(row)
+    columns = ["participant", "ratings", "missing", "mean", "lowest", "highest", "distinct"]
+    table = pd.DataFrame(rows, columns=[*columns, "median_response_s"])
+    return table.astype({"median_response_s": "Float64"})
+
+
+def quality_statements(tables: Tables) -> list[str]:
+    """Say in sentences what a reader must know about the data behind the figures."""
+    ratings = tables.ratings
+    text = list(tables.notes)
+    practice = int(ratings["is_practice"].sum())
+    if practice:
+        text.append(f"{practice} ratings of practice trials are not counted.")
+    counted = ratings[~ratings["is_practice"]]
+    missing = int(counted["rating"].isna().sum())
+    if missing:
+        text.append(
+            f"{missing} of {len(counted)} ratings are missing ({missing / len(counted):.1%}); "
+            "they are left out, not replaced."
+        )
+    uncertified = int((counted["certified"] == False).fillna(False).sum())  # noqa: E712 - nullable
+    if uncertified:
+        text.append(
+            f"{uncertified} ratings belong to presentations that failed the study's rule; they are "
+            "kept and counted."
+        )
+    text += _versions(counted)
+    text += _use_of_scale(people_overview(tables), tables.scale)
+    text += _unknown_people(tables)
+    return text
+
+
+def _versions(ratings: pd.DataFrame) -> list[str]:
+    versions = ratings[["study", "study_version"]].dropna(how="all").drop_duplicates()
+    if len(versions) < 2:
+        return []
+    names = "; ".join(" ".join(row.dropna().astype(str)) for _, row in versions.iterrows())
+    return [f"Several studies or versions are pooled: {names}."]
+
+
+def _use_of_scale(people: pd.DataFrame, scale: tuple[int, int]) -> list[str]:
+    total, highest = int(people["ratings"].sum()), int(people["highest"].sum())
+    if not total:
+        return []
+    text = f"{highest} of {total} ratings are the highest ({scale[1]})"
+    if highest > 1:
+        most = int(people["highest"].max())
+        text += f", at most {most} of them from one person" if most < highest else ", all from one"
+        text += " person" if most == highest else ""
+    alike = people.loc[(people["ratings"] > 2) & (people["distinct"] == 1), "participant"]
+    found = [text + "."]
+    if len(alike):
+        found.append(f"Gave the same rating throughout: {', '.join(map(str, alike))}.")
+    return found
+
+
+def _unknown_people(tables: Tables) -> list[str]:
+    if tables.participants.empty:
+        return []
+    known = set(tables.participants["participant"])
+    unknown = sorted(set(tables.ratings["participant"]) - known)
+    return [f"Not in the table of participants: {', '.join(unknown)}."] if unknown else []
