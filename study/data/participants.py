@@ -14,6 +14,7 @@ from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
+from study.data.devices import read_device
 from study.data.refusals import WithdrawnError
 from study.data.schema import EventRow, ParticipantRow, SessionRow, TrialRow
 from study.data.studies import Study
@@ -83,7 +84,7 @@ def enrol(
         )
         session.add(row)
         session.flush()
-        _open_session(session, row, now, device or {}, number=1)
+        _open_session(session, row, now, read_device(device or {}), number=1)
         return Enrolment(record_of(row), token)
 
 
@@ -121,7 +122,7 @@ def seen(
         row = locked(session, participant)
         sitting = touch(session, row, now)
         if device is not None:
-            sitting.device = {**sitting.device, **device}
+            sitting.device = {**sitting.device, **read_device(device)}
         return record_of(row)
 
 
@@ -199,3 +200,12 @@ def _free_pseudonym(session: Session, rng: np.random.Generator) -> str:
 def _hash(token: str) -> str:
     # A token has 256 random bits: a plain hash cannot be reversed, and it can be looked up.
     return hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()
+
+
+def anyone_has_begun(db: Database) -> bool:
+    """Say whether a participant who is not simulated has begun the trials of any study."""
+    query = select(ParticipantRow.id).where(
+        ParticipantRow.simulated.is_(False), ParticipantRow.begun_at.is_not(None)
+    )
+    with db.reading() as session:
+        return session.scalar(query.limit(1)) is not None
