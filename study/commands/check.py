@@ -3,16 +3,70 @@
 from __future__ import annotations
 
 import argparse
+import textwrap
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
 
 from study.commands.options import add_study
+
+if TYPE_CHECKING:
+    from study.design.definition import StudyDefinition
 
 HELP = "check a study file and audit its design"
 DESCRIPTION = (
     "Read a study file and report every fault with its place, what was found and what is accepted. "
-    "A sound file is summed up, with warnings about what the study cannot show."
+    "A sound file is summed up, and what its design can and cannot show is said."
 )
+WIDTH: Final = 96
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
     add_study(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print the summary and the audit; a faulty file ends in DefinitionError."""
+    from study.design.definition import read_definition
+
+    definition = read_definition(options.study)
+    for line in [*summary(definition), "", *audit(definition)]:
+        print(line)
+    return 0
+
+
+def summary(definition: StudyDefinition) -> Iterator[str]:
+    """Yield what the study shows, clip by clip."""
+    wanted = definition.wanted_specs()
+    seconds = sum(entry.spec.duration_s for entry in wanted)
+    yield f"{definition.title} ({definition.key}, version {definition.version})"
+    yield (
+        f"{len(definition.trial_clips)} clips and {len(definition.practice)} for practice, in "
+        f"{' and '.join(map(str, definition.sizes))}, "
+        f"{' and '.join(definition.orbit.directions)}: {len({w.spec.clip_id for w in wanted})} "
+        f"files, {seconds:g} s of video"
+    )
+    yield (
+        f"{len(definition.about)} questions about the participant, {len(definition.questions)} "
+        "after each clip"
+    )
+    yield ""
+    yield f"{'clip':24}{'distance':14}{'left':18}{'right':18}"
+    for clip in definition.every_clip:
+        mark = " (practice)" if clip in definition.practice else ""
+        mark = " (catch)" if clip.is_catch else mark
+        yield f"{clip.id:24}{clip.distance:14}{clip.left:18}{clip.right:18}{mark}".rstrip()
+
+
+def audit(definition: StudyDefinition) -> Iterator[str]:
+    """Yield what the design can and cannot show, one wrapped statement after the other."""
+    from analysis.audit import ShownClip, audit_design
+
+    shown = [
+        ShownClip(clip.id, clip.distance, clip.left, clip.right) for clip in definition.trial_clips
+    ]
+    yield "What this design shows and what it cannot answer:"
+    for statement in audit_design(shown).statements():
+        yield from textwrap.wrap(
+            statement, WIDTH, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False
+        )

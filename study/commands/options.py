@@ -7,15 +7,18 @@ A level is never read without its effect's or eye's name beside it, nor a distan
 from __future__ import annotations
 
 import argparse
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
+
+if TYPE_CHECKING:
+    from study.settings import Settings
 
 T = TypeVar("T")
 
 DEFAULT_STUDY: Final = "thesis"
-DATA_FOLDER: Final = Path("ocularist-data")
 
 
 def add_study(parser: argparse.ArgumentParser) -> None:
@@ -29,19 +32,53 @@ def add_study(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_database(parser: argparse.ArgumentParser) -> None:
-    """Add --database and --media, the two places where a study's data lie."""
+def add_places(parser: argparse.ArgumentParser) -> None:
+    """Add --data, --database and --media: the places where a study's data lie."""
+    parser.add_argument(
+        "--data",
+        type=Path,
+        metavar="DIR",
+        help="folder of everything that is stored (default: ocularist-data)",
+    )
     parser.add_argument(
         "--database",
         metavar="URL",
-        help="SQLAlchemy URL of the database, such as sqlite:///study.db or postgresql://host/name "
-        f"(default: the SQLite file in {DATA_FOLDER}/)",
+        help="database, such as sqlite:///study.sqlite3 or postgresql+psycopg://host/name "
+        "(default: an SQLite file in the data folder)",
     )
     parser.add_argument(
         "--media",
         type=Path,
         metavar="DIR",
-        help=f"folder of the clips and their manifest (default: {DATA_FOLDER}/clips)",
+        help="folder of the clips (default: in the data folder)",
+    )
+
+
+def add_listening(parser: argparse.ArgumentParser) -> None:
+    """Add where the site listens, and its certificate."""
+    parser.add_argument(
+        "--host",
+        help="address to listen on; 0.0.0.0 lets others on the network in (default: 127.0.0.1)",
+    )
+    parser.add_argument("--port", type=port, help="port to listen on (default: 8000)")
+    parser.add_argument("--tls-cert", type=Path, metavar="FILE", help="certificate, for https")
+    parser.add_argument("--tls-key", type=Path, metavar="FILE", help="its private key")
+
+
+def settings_of(options: argparse.Namespace) -> Settings:
+    """Combine these options with the environment and the defaults."""
+    from study.settings import read_settings
+
+    given = vars(options)
+    return read_settings(
+        os.environ,
+        data_folder=given.get("data"),
+        database=given.get("database"),
+        media=given.get("media"),
+        host=given.get("host"),
+        port=given.get("port"),
+        tls_cert=given.get("tls_cert"),
+        tls_key=given.get("tls_key"),
     )
 
 

@@ -13,7 +13,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Protocol
 
@@ -100,11 +100,17 @@ def stop_all(kept: Sequence[Kept]) -> None:
             process.wait()
 
 
-def start_command(arguments: Sequence[str], *, niceness: int = 0) -> subprocess.Popen[bytes]:
+def start_command(
+    arguments: Sequence[str],
+    *,
+    environment: Mapping[str, str] | None = None,
+    niceness: int = 0,
+) -> subprocess.Popen[bytes]:
     """Start ``ocularist`` with these arguments as a process of its own.
 
-    It lives in its own session, so that Ctrl-C reaches its keeper alone, and ends with its keeper
-    even if that is killed.
+    ``environment`` adds to ours; secrets go there, because everybody can read arguments. The
+    process lives in its own session, so that Ctrl-C reaches its keeper alone, and ends with its
+    keeper even if that is killed.
     """
     end_with_parent = _end_with_parent()
 
@@ -115,6 +121,7 @@ def start_command(arguments: Sequence[str], *, niceness: int = 0) -> subprocess.
     return subprocess.Popen(
         [sys.executable, "-m", "study", *arguments],
         stdin=subprocess.DEVNULL,
+        env={**os.environ, **(environment or {})},
         start_new_session=True,
         preexec_fn=prepare,  # noqa: PLW1509 - the keeper has no threads
     )

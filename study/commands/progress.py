@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
+import time
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 if TYPE_CHECKING:
     from tqdm import tqdm
 
-BAR_FORMAT = "{desc} {bar} {n:.1f} of {total} clips, {remaining} left"
+BAR_FORMAT: Final = "{desc} {bar} {postfix}"
 
 
 class ClipBar:
@@ -20,7 +21,8 @@ class ClipBar:
 
         self._title = title
         self._total = total
-        self._finished = 0
+        self._told = 0
+        self._began: tuple[float, float] | None = None
         self._bar: tqdm[Any] = tqdm(
             total=total,
             desc=title,
@@ -38,13 +40,42 @@ class ClipBar:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
+        self.close()
+
+    def show(self, done: float, *, left_s: float | None = None) -> None:
+        """Move the bar to ``done`` clips; 2.5 means half of the third.
+
+        Without ``left_s`` the time left is reckoned from how fast the bar has moved so far.
+        """
+        now = time.monotonic()
+        if self._began is None:
+            self._began = (now, done)
+        if left_s is None and done > self._began[1]:
+            per_clip_s = (now - self._began[0]) / (done - self._began[1])
+            left_s = per_clip_s * (self._total - done)
+        state = f"{done:.1f} of {self._total} clips" + time_left(left_s)
+        if not self._bar.disable:
+            self._bar.n = min(done, self._total)
+            self._bar.set_postfix_str(state)
+        elif int(done) > self._told:
+            self._told = int(done)
+            print(f"{self._title}: {state}", file=sys.stderr, flush=True)
+
+    def clear(self) -> None:
+        """Take the bar off the screen until it moves again."""
+        self._bar.clear()
+
+    def close(self) -> None:
+        """Take the bar off the screen for good."""
         self._bar.close()
 
-    def show(self, done: float) -> None:
-        """Move the bar to ``done`` clips; 2.5 means half of the third."""
-        self._bar.n = min(done, self._total)
-        self._bar.refresh()
-        if int(done) > self._finished:
-            self._finished = int(done)
-            if self._bar.disable:
-                print(f"{self._title}: {self._finished} of {self._total} clips", flush=True)
+
+def time_left(left_s: float | None) -> str:
+    """Return ``, about 3 min left``; nothing while there is no telling."""
+    if left_s is None:
+        return ""
+    if left_s < 90:
+        return f", about {max(1, round(left_s / 5)) * 5} s left"
+    if left_s < 90 * 60:
+        return f", about {round(left_s / 60)} min left"
+    return f", about {left_s / 3600:.1f} h left"

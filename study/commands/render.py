@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from study.commands.errors import CommandError
-from study.commands.options import DATA_FOLDER, add_study, count, size
+from study.commands.options import add_study, count, settings_of, size
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
@@ -31,9 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out",
         type=Path,
-        default=DATA_FOLDER / "clips",
         metavar="DIR",
-        help="folder for the clips (default: %(default)s, where ocularist run finds them)",
+        help="folder for the clips (default: ocularist-data/clips, where ocularist run finds them)",
     )
     parser.add_argument(
         "--only",
@@ -65,16 +64,17 @@ def run(options: argparse.Namespace) -> int:
 
     definition = read_definition(options.study)
     specs = wanted(definition, only=options.only, sizes=options.size, fps=options.fps)
+    folder = options.out or settings_of(options).media_folder
     with ClipBar(len(specs)) as bar:
         if options.workers == 1:
-            records = _render_here(specs, options.out, bar.show)
+            records = _render_here(specs, folder, bar.show)
         else:
             # Each process opens its own GL context; a forked one would share its parent's.
             context = multiprocessing.get_context("spawn")
             with ProcessPoolExecutor(options.workers, mp_context=context) as executor:
-                records = render_with(executor, specs, options.out, bar.show)
+                records = render_with(executor, specs, folder, bar.show)
     megabytes = sum(record.file_bytes for record in records) / 1e6
-    print(f"{len(records)} clips, {megabytes:.1f} MB, in {options.out}")
+    print(f"{len(records)} clips, {megabytes:.1f} MB, in {folder}")
     return 0
 
 

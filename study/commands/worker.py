@@ -1,0 +1,63 @@
+"""``ocularist worker``: render the clips that a database waits for."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING
+
+from study.commands.options import add_places, settings_of
+
+if TYPE_CHECKING:
+    from renderer.studio import Studio
+    from study.worker import Render
+
+HELP = "render the clips that a database waits for"
+DESCRIPTION = (
+    "Claim and render clips until stopped. Several workers may share one database: no clip is "
+    "rendered twice, and one that is killed loses only its clip."
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add this command's arguments."""
+    add_places(parser)
+    parser.add_argument(
+        "--until-empty", action="store_true", help="stop when no clip is waiting any more"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Render until stopped by Ctrl-C or SIGTERM."""
+    from renderer.studio import Studio
+    from study.data.database import open_database
+    from study.worker import run_worker, stopping_on_signals
+
+    settings = settings_of(options)
+    db = open_database(settings.database_url)
+    studio = Studio()  # before any clip is claimed: a machine without GL says so at once
+    try:
+        with stopping_on_signals() as stop:
+            rendered = run_worker(
+                db,
+                settings.media_folder,
+                render=rendering_with(studio),
+                stop=stop,
+                until_empty=options.until_empty,
+                say=lambda line: print(line, file=sys.stderr, flush=True),
+            )
+    finally:
+        studio.close()
+        db.close()
+    if options.until_empty:
+        print(f"{rendered} clips rendered into {settings.media_folder}")
+    return 0
+
+
+def rendering_with(studio: Studio) -> Render:
+    """Return what a worker calls to have one clip rendered in this process's GL context."""
+    from renderer.batch import render_clip
+
+    return lambda spec, folder, progress: render_clip(
+        spec, folder, source=studio, progress=progress
+    )
