@@ -1,0 +1,206 @@
+"""Cube maps that are drawn into: faces, levels, attachment, smaller levels.
+
+moderngl accepts no face of a cube as a target, so the faces are attached through OpenGL itself
+(ctypes). Face order and orientation: OpenGL 4.3 core, table 8.18.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+from collections.abc import Callable, Iterable
+from typing import Any, Final
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from renderer.program import build_program
+
+Rectangle = tuple[int, int, int, int]
+
+FACES: Final = ("+x", "-x", "+y", "-y", "+z", "-z")
+# Columns: right (s grows), down (t grows), forward (major axis).
+FACE_AXES: Final = tuple(
+    np.array(rows, dtype=float).T
+    for rows in (
+        [[0, 0, -1], [0, -1, 0], [1, 0, 0]],
+        [[0, 0, 1], [0, -1, 0], [-1, 0, 0]],
+        [[1, 0, 0], [0, 0, 1], [0, 1, 0]],
+        [[1, 0, 0], [0, 0, -1], [0, -1, 0]],
+        [[1, 0, 0], [0, -1, 0], [0, 0, 1]],
+        [[-1, 0, 0], [0, -1, 0], [0, 0, -1]],
+    )
+)
+
+_FRAMEBUFFER: Final = 0x8D40
+_COLOR_ATTACHMENT0: Final = 0x8CE0
+_FRAMEBUFFER_COMPLETE: Final = 0x8CD5
+_POSITIVE_X: Final = 0x8515
+_TEXTURE_CUBE_MAP: Final = 0x8513
+_TEXTURE_BASE_LEVEL: Final = 0x813C
+_TEXTURE_MAX_LEVEL: Final = 0x813D
+_RGBA16F: Final = 0x881A
+_RGBA: Final = 0x1908
+_HALF_FLOAT: Final = 0x140B
+_TEXTURE0: Final = 0x84C0
+_SPARE_UNIT: Final = 15  # no program of ours uses so many textures
+
+
+@functools.cache
+def gl_function(name: str, *arguments: Any, result: Any = None) -> Callable[..., Any]:
+    """Return an OpenGL function by name with ctypes' argument types.
+
+    Raises RuntimeError that names the libraries when neither EGL nor libGL offers it.
+    """
+    prototype = ctypes.CFUNCTYPE(result, *arguments)
+    try:
+        egl = ctypes.CDLL("libEGL.so.1")
+        egl.eglGetProcAddress.restype = ctypes.c_void_p
+        egl.eglGetProcAddress.argtypes = [ctypes.c_char_p]
+        address = egl.eglGetProcAddress(name.encode())
+        if address:
+            return prototype(address)
+    except OSError:
+        pass
+    for library in ("libOpenGL.so.0", "libGL.so.1"):
+        try:
+            return prototype((name, ctypes.CDLL(library)))
+        except (OSError, AttributeError):
+            continue
+    raise RuntimeError(
+        f"{name}: not found through libEGL.so.1, libOpenGL.so.0 or libGL.so.1; install the OpenGL "
+        "libraries, on Debian: apt-get install libegl1 libgl1"
+    )
+
+
+def face_view(face: int) -> npt.NDArray[np.float64]:
+    """Return the 4 x 4 world-to-camera matrix of a face seen from the origin, t upwards."""
+    right, down, forward = FACE_AXES[face].T
+    matrix = np.eye(4)
+    matrix[:3, :3] = right, down, -forward
+    return matrix
+
+
+class CubeTarget:
+    """An RGBA16F cube map with levels whose faces can be drawn into.
+
+    ``attach`` makes one face and level the target of drawing. With ``depth`` level 0 has a depth
+    buffer, which all faces share: clear it for each.
+    """
+
+    def __init__(
+        self, gl: moderngl.Context, size: int, *, levels: int = 1, depth: bool = False
+    ) -> None:
+        self.gl = gl
+        self.size = size
+        self.levels = levels
+        self.texture = gl.texture_cube((size, size), 4, dtype="f2")
+        self._allocate_levels()
+        self.texture.filter = (
+            (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
+            if levels > 1
+            else (moderngl.LINEAR, moderngl.LINEAR)
+        )
+        self._target = self._make_target(depth=depth)
+        self._small = self._make_target(depth=False) if depth else self._target
+        self._halve = build_program(gl, "screen.vert", fragment="cube_halve.frag")
+        self._screen = gl.vertex_array(self._halve.gl_program, [])
+
+    def attach(self, face: int, *, level: int = 0) -> moderngl.Framebuffer:
+        """Make a face and level the target, with viewport and scissor over all of it."""
+        target = self._target if level == 0 else self._small
+        target.use()
+        integer = ctypes.c_uint
+        attach = gl_function("glFramebufferTexture2D", *[integer] * 4, ctypes.c_int)
+        attach(_FRAMEBUFFER, _COLOR_ATTACHMENT0, _POSITIVE_X + face, self.texture.glo, level)
+        status = gl_function("glCheckFramebufferStatus", integer, result=integer)(_FRAMEBUFFER)
+        if status != _FRAMEBUFFER_COMPLETE:
+            raise RuntimeError(
+                f"cube face {FACES[face]}, level {level}: the driver refuses it as a target "
+                f"(framebuffer status {status:#x})"
+            )
+        side = self.size >> level
+        target.viewport = (0, 0, side, side)
+        target.scissor = (0, 0, side, side)
+        return target
+
+    def build_levels(self, rectangles: Iterable[tuple[int, Rectangle]] | None = None) -> None:
+        """Fill the smaller levels by halving, all or below rectangles (face, (x, y, w, h))."""
+        whole = [(face, (0, 0, self.size, self.size)) for face in range(6)]
+        wanted = whole if rectangles is None else list(rectangles)
+        self.gl.enable_only(moderngl.NOTHING)
+        for level in range(1, self.levels):
+            self._confine_reading(level - 1)
+            side = self.size >> level
+            for face, rectangle in wanted:
+                target = self.attach(face, level=level)
+                target.scissor = _shrunk(rectangle, level, side=side)
+                self._halve.set(
+                    u_face=FACE_AXES[face],
+                    u_face_size=(side, side),
+                    u_source=self.texture,
+                )
+                self._screen.render(moderngl.TRIANGLES, vertices=3)
+        self._confine_reading(None)
+
+    def _allocate_levels(self) -> None:
+        self._bind()
+        integer = ctypes.c_int
+        allocate = gl_function(
+            "glTexImage2D",
+            *[ctypes.c_uint, *[integer] * 5, ctypes.c_uint, ctypes.c_uint, ctypes.c_void_p],
+        )
+        for level in range(1, self.levels):
+            side = self.size >> level
+            for face in range(6):
+                allocate(
+                    _POSITIVE_X + face, level, _RGBA16F, side, side, 0, _RGBA, _HALF_FLOAT, None
+                )
+        self._confine_reading(None)
+
+    def _confine_reading(self, level: int | None) -> None:
+        """Let lookups see one level alone, so that another may be written; None: all levels."""
+        self._bind()
+        set_parameter = gl_function("glTexParameteri", ctypes.c_uint, ctypes.c_uint, ctypes.c_int)
+        first, last = (0, self.levels - 1) if level is None else (level, level)
+        set_parameter(_TEXTURE_CUBE_MAP, _TEXTURE_BASE_LEVEL, first)
+        set_parameter(_TEXTURE_CUBE_MAP, _TEXTURE_MAX_LEVEL, last)
+
+    def _bind(self) -> None:
+        gl_function("glActiveTexture", ctypes.c_uint)(_TEXTURE0 + _SPARE_UNIT)
+        gl_function("glBindTexture", ctypes.c_uint, ctypes.c_uint)(
+            _TEXTURE_CUBE_MAP, self.texture.glo
+        )
+
+    def _make_target(self, *, depth: bool) -> moderngl.Framebuffer:
+        # moderngl wants a colour attachment of its own; a face takes its place at once.
+        stand_in = self.gl.renderbuffer((self.size, self.size), 4, dtype="f2")
+        buffer = self.gl.depth_renderbuffer((self.size, self.size)) if depth else None
+        target = self.gl.framebuffer([stand_in], buffer)
+        target.use()
+        return target
+
+
+def _shrunk(rectangle: Rectangle, level: int, *, side: int) -> Rectangle:
+    """Return the texels of a smaller level that a rectangle of level 0 touches."""
+    x, y, width, height = rectangle
+    left, low = x >> level, y >> level
+    right = min(side, ((x + width - 1) >> level) + 1)
+    high = min(side, ((y + height - 1) >> level) + 1)
+    return left, low, max(0, right - left), max(0, high - low)
+
+
+def read_face(texture: moderngl.TextureCube, face: int) -> npt.NDArray[np.float32]:
+    """Read a face of an RGBA16F cube map as (size, size, 4) float32, rows in texture order."""
+    size = texture.size[0]
+    pixels = np.frombuffer(texture.read(face), dtype=np.float16)
+    return pixels.reshape(size, size, 4).astype(np.float32)
+
+
+def face_directions(size: int, face: int) -> npt.NDArray[np.float64]:
+    """Return the unit directions (size, size, 3) of a face's texels, rows in texture order."""
+    centres = (np.arange(size) + 0.5) / size * 2 - 1
+    s, t = np.meshgrid(centres, centres)
+    directions = np.stack([s, t, np.ones_like(s)], axis=-1) @ FACE_AXES[face].T
+    return np.asarray(directions / np.linalg.norm(directions, axis=-1, keepdims=True))
