@@ -14,7 +14,7 @@ import sys
 from collections.abc import Sequence
 from typing import Final, NoReturn
 
-from study.commands.errors import USER_ERRORS, one_line
+from study.commands.errors import USER_ERRORS, is_ours, one_line
 
 COMMANDS: Final = (
     "run",
@@ -73,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout = open(os.devnull, "w")  # noqa: PTH123, SIM115 - Python flushes it at exit
         return 141
     except USER_ERRORS as error:
-        if os.environ.get("OCULARIST_TRACEBACK"):
+        if os.environ.get("OCULARIST_TRACEBACK") or is_ours(error):
             raise
         print(one_line(f"ocularist {options.command}", error), file=sys.stderr)
         return 1

@@ -15,6 +15,12 @@ class CommandError(Exception):
 USER_ERRORS: Final = (CommandError, ValueError, OSError, RuntimeError, ImportError)
 
 
+def is_ours(error: Exception) -> bool:
+    """Say whether an error is a mistake in the program although its type is a user's error."""
+    ours = ("analysis", "renderer", "study")
+    return isinstance(error, ImportError) and (error.name or "").partition(".")[0] in ours
+
+
 def one_line(place: str, error: Exception) -> str:
     """Write an error as ``place: message``, one line per fault that the message holds."""
     return "\n".join(f"{place}: {line}" for line in message_of(error).splitlines())

@@ -1,9 +1,12 @@
-"""Get a study ready in a database: its definition stored, its clips wanted."""
+"""Get a study ready in a database, or find one that is there."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+from study.commands.errors import CommandError
 
 if TYPE_CHECKING:
     from study.data.database import Database
@@ -34,3 +37,48 @@ def prepare(settings: Settings, study: str) -> Prepared:
     stored = studies.register(db, definition)
     jobs.enqueue(db, definition.wanted_specs())
     return Prepared(db, stored)
+
+
+def find_study(db: Database, wanted: str | None) -> Study:
+    """Return the study that a database has under a key or a study file; None: the newest.
+
+    Raises CommandError naming the studies that it has.
+    """
+    from study.data import studies
+    from study.design.definition import read_definition
+
+    if wanted is None or studies.latest(db, wanted) is not None:
+        found = studies.latest(db, wanted)
+    else:
+        definition = read_definition(wanted)
+        same = [
+            study
+            for study in studies.all_studies(db)
+            if (study.key, study.version) == (definition.key, definition.version)
+        ]
+        found = same[-1] if same else None
+    if found is None:
+        there = ", ".join(f"{s.key} (version {s.version})" for s in studies.all_studies(db))
+        raise CommandError(
+            f"study {wanted or ''} is not in this database; it has {there}"
+            if there
+            else "there is no study in this database; ocularist run puts one in"
+        )
+    return found
+
+
+def open_existing(settings: Settings) -> Database:
+    """Open a database that must be there already; an SQLite file is not made anew.
+
+    Raises CommandError naming the file that is missing.
+    """
+    from study.data.database import open_database
+
+    prefix = "sqlite:///"
+    if settings.database_url.startswith(prefix):
+        path = Path(settings.database_url.removeprefix(prefix))
+        if not path.is_file():
+            raise CommandError(
+                f"{path}: no such database; ocularist run makes one, --database names another"
+            )
+    return open_database(settings.database_url)

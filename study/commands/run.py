@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import errno
 import signal
-import socket
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-from study.commands.errors import CommandError
+from study.commands.listening import answers, check_port, welcome
 from study.commands.options import add_listening, add_places, add_study, settings_of
 
 if TYPE_CHECKING:
@@ -76,55 +74,6 @@ def _start_site(
     print("\n".join(welcome(settings, prepared.study.title, password)), flush=True)
 
 
-def welcome(settings: Settings, title: str, password: str | None) -> list[str]:
-    """Return the lines that are printed once the site is up."""
-    from study.commands.researcher import FIRST_NAME
-
-    address = address_of(settings)
-    lines = ["", title, f"  participants  {address}/", f"  researchers   {address}/researcher"]
-    if password is not None:
-        lines += [f"                name {FIRST_NAME}, password {password}"]
-        lines += ["                (shown this once; ocularist researcher add makes another)"]
-    return [*lines, "  stop          Ctrl-C", ""]
-
-
-def address_of(settings: Settings) -> str:
-    """Return the address to type into a browser."""
-    scheme = "https" if settings.is_encrypted else "http"
-    host = socket.gethostname() if settings.host in ("0.0.0.0", "::", "") else settings.host
-    return f"{scheme}://{f'[{host}]' if ':' in host else host}:{settings.port}"
-
-
-def check_port(settings: Settings) -> None:
-    """Raise CommandError if the site could not listen where the settings say."""
-    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
-    try:
-        socket.create_server((settings.host, settings.port), family=family).close()
-    except OSError as error:
-        raise CommandError(_why_no_port(error, settings)) from None
-
-
-def _why_no_port(error: OSError, settings: Settings) -> str:
-    if error.errno == errno.EADDRINUSE:
-        return (
-            f"port {settings.port} on {settings.host} is in use, perhaps by another study; stop "
-            "that one or choose another port with --port"
-        )
-    if error.errno == errno.EACCES:
-        return f"port {settings.port} may not be used; choose one from 1024 on with --port"
-    return f"cannot listen on {settings.host}, port {settings.port}: {error.strerror or error}"
-
-
-def answers(settings: Settings) -> bool:
-    """Say whether somebody listens at the site's port."""
-    host = {"0.0.0.0": "127.0.0.1", "::": "::1", "": "127.0.0.1"}.get(settings.host, settings.host)
-    try:
-        socket.create_connection((host, settings.port), timeout=1.0).close()
-    except OSError:
-        return False
-    return True
-
-
 def _kept(settings: Settings, study: str, *, say: Callable[[str], None]) -> list[Kept]:
     from study.commands.processes import Kept, Process, start_command
 
@@ -132,7 +81,10 @@ def _kept(settings: Settings, study: str, *, say: Callable[[str], None]) -> list
     listening = ["--host", settings.host, "--port", str(settings.port)]
     if settings.tls_cert and settings.tls_key:
         listening += ["--tls-cert", str(settings.tls_cert), "--tls-key", str(settings.tls_key)]
-    commands = {"site": ["serve", study, *places, *listening], "renderer": ["worker", *places]}
+    commands = {
+        "site": ["serve", study, "--quiet", *places, *listening],
+        "renderer": ["worker", *places],
+    }
     # A database's URL may hold a password, so it is no argument.
     environment = {"OCULARIST_DATABASE": settings.database_url}
 
