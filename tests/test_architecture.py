@@ -18,7 +18,7 @@ PURE_RENDERER = (
     *(f"renderer.{name}" for name in ("camera", "clip", "detail", "manifest")),
 )
 # What study may know of the renderer; the entry point alone starts GL.
-STIMULI = {"renderer", "renderer.clip", "renderer.detail", "renderer.manifest"}
+STIMULI = set(PURE_RENDERER)
 ENTRY_POINT = ("study.cli", "study.commands")
 # The rooms of study, each with the rooms it may import from.
 ROOMS = {
