@@ -10,7 +10,7 @@ import pandas as pd
 
 from analysis.table import DISTANCES, EYES, STANDARD_LODS
 
-_SHOWN_BY: Final = ("distance", "clip", "lesser", "greater", "lod", "eye")
+_SHOWN_BY: Final = ("distance", "clip", "eye", "lesser", "greater", "lod")
 
 
 def distance_order(rows: pd.DataFrame) -> list[str]:

@@ -1,0 +1,120 @@
+"""What several charts share: labels of distances, legends, rows in groups."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from analysis.chart_style import INK, SMALL, lod_colour, lod_marker
+from analysis.reading import Tables
+
+
+def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return a table's rows as dictionaries by column name."""
+    return [{str(name): value for name, value in row.items()} for row in frame.to_dict("records")]
+
+
+def distance_label(distance: str, tables: Tables, *, joint: str = ", ") -> str:
+    """Name a distance together with the iris's diameter there, if it is known."""
+    own = tables.ratings.loc[tables.ratings["distance"] == distance, "iris_px"].dropna()
+    return f"{distance}{joint}iris {own.median():.0f} px" if len(own) else distance
+
+
+def clip_label(clip: str) -> str:
+    """Name a clip: "clip 4" where its name is only a number."""
+    return f"clip {clip}" if clip[:1].isdigit() else clip
+
+
+def lod_legend(
+    figure: Figure, shown: Sequence[str], lods: Sequence[str], *, is_beside: bool = False
+) -> None:
+    """Explain the LoDs' colours and markers below the panels, or beside them."""
+    handles = [
+        Line2D(
+            [],
+            [],
+            marker=lod_marker(lod, lods),
+            color=lod_colour(lod, lods),
+            linestyle="",
+            markeredgecolor=INK,
+            markersize=7,
+            label=lod,
+        )
+        for lod in shown
+    ]
+    if is_beside:
+        figure.legend(
+            handles=handles,
+            loc="outside right center",
+            frameon=False,
+            fontsize=SMALL,
+            title="LoD",
+            title_fontsize=SMALL,
+        )
+    else:
+        figure.legend(
+            handles=handles,
+            loc="outside lower center",
+            ncols=min(8, len(handles)),
+            frameon=False,
+            fontsize=SMALL,
+        )
+
+
+def grouped_places(groups: Sequence[str]) -> list[float]:
+    """Return one place per row, from 1, with a gap wherever the group changes."""
+    places: list[float] = []
+    at = 0.0
+    for number, group in enumerate(groups):
+        at += 1.0 if number == 0 or group == groups[number - 1] else 1.75
+        places.append(at)
+    return places
+
+
+def head_groups(axes: Axes, places: Sequence[float], groups: Sequence[str], tables: Tables) -> None:
+    """Write each distance above its first row and let the vertical axis run downwards."""
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(places[-1] + 0.6, places[0] - 1.0)
+    for number, (y, distance) in enumerate(zip(places, groups, strict=True)):
+        if number == 0 or distance != groups[number - 1]:
+            axes.text(
+                0,
+                y - 0.52,
+                distance_label(distance, tables),
+                transform=axes.get_yaxis_transform(),
+                ha="left",
+                va="bottom",
+                fontsize=SMALL,
+                fontweight="bold",
+                color=INK,
+            )
+
+
+def draw_mean(
+    axes: Axes, x: float, row: Mapping[str, Any], *, lods: Sequence[str], colour: str = INK
+) -> None:
+    """Draw one mean with its interval; ``row`` has lod, mean, low and high."""
+    if math.isfinite(row["low"]):
+        axes.plot([x, x], [row["low"], row["high"]], color=colour, linewidth=1.3, zorder=3)
+    axes.plot(
+        [x],
+        [row["mean"]],
+        marker=lod_marker(row["lod"], lods),
+        color=lod_colour(row["lod"], lods),
+        markeredgecolor=INK,
+        markeredgewidth=0.9,
+        markersize=7.5,
+        zorder=4,
+    )
+
+
+def readable_on(colour: str) -> str:
+    """Return dark or white, whichever is legible on a colour given as #rrggbb."""
+    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    return INK if 0.3 * red + 0.59 * green + 0.11 * blue > 140 else "white"

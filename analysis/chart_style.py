@@ -1,0 +1,158 @@
+"""How every chart looks: colours, sizes, panels, the label of simulated data.
+
+Figures are built without pyplot and its global state, so they can be drawn in any thread. Colours
+are those of Okabe and Ito and of ColorBrewer's PuOr, which people with colour-blindness tell apart;
+LoDs differ in marker too.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+INK: Final = "#222222"
+QUIET: Final = "#6b6b6b"
+FAINT: Final = "#dddddd"
+ALARM: Final = "#b3261e"
+SIMULATED: Final = "SIMULATED DATA"
+NO_RATINGS: Final = "No rating has been given yet."
+
+LOD_COLOURS: Final = {"low": "#D55E00", "medium": "#E69F00", "high": "#56B4E9", "ultra": "#0072B2"}
+_LOD_MARKERS: Final = {"low": "o", "medium": "s", "high": "D", "ultra": "^"}
+_OTHER_COLOURS: Final = ("#009E73", "#CC79A7", "#7F7F7F", "#8C6D31", "#5254A3", "#AD494A")
+_OTHER_MARKERS: Final = ("v", "P", "X", "<", ">", "h")
+
+CHOICE_COLOURS: Final = ("#7570B3", "#E2E2E2", "#1B9E77")
+NOTICE_COLOURS: Final = ("#1F3A5F", "#9DB4CE", "#E8E8E8")
+_SCALE_COLOURS: Final = ("#B35806", "#F1A340", "#EDEDED", "#A79FCC", "#542788")
+
+SMALL: Final = 8.0
+NORMAL: Final = 9.0
+LARGE: Final = 11.0
+PNG_DPI: Final = 160
+
+
+def lod_colour(lod: str, lods: Sequence[str]) -> str:
+    """Return a LoD's colour; LoDs that a study names take theirs in the order of ``lods``."""
+    return LOD_COLOURS.get(lod) or _OTHER_COLOURS[_place(lod, lods) % len(_OTHER_COLOURS)]
+
+
+def lod_marker(lod: str, lods: Sequence[str]) -> str:
+    """Return a LoD's marker."""
+    return _LOD_MARKERS.get(lod) or _OTHER_MARKERS[_place(lod, lods) % len(_OTHER_MARKERS)]
+
+
+def _place(lod: str, lods: Sequence[str]) -> int:
+    return [name for name in lods if name not in LOD_COLOURS].index(lod)
+
+
+def scale_colours(steps: int) -> list[str]:
+    """Return one colour per rating, from lowest to highest, neutral in the middle."""
+    if steps == len(_SCALE_COLOURS):
+        return list(_SCALE_COLOURS)
+    shades = mpl.colormaps["PuOr"](np.linspace(0.08, 0.92, steps))
+    return [mpl.colors.to_hex(shade) for shade in shades]
+
+
+def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: bool) -> Figure:
+    """Return an empty figure with its title, labelled across if the data are simulated."""
+    figure = Figure(figsize=(width_in, height_in), layout="constrained", facecolor="white")
+    FigureCanvasAgg(figure)
+    figure.suptitle(title, x=0.01, ha="left", fontsize=LARGE, fontweight="bold", color=INK)
+    if is_simulated:
+        figure.text(
+            0.995,
+            0.995,
+            SIMULATED,
+            ha="right",
+            va="top",
+            fontsize=NORMAL,
+            fontweight="bold",
+            color=ALARM,
+        )
+        size = 11.0 * min(width_in, 2.2 * height_in) / 2.6
+        figure.text(
+            0.5,
+            0.48,
+            "SIMULATED",
+            ha="center",
+            va="center",
+            fontsize=size,
+            rotation=18,
+            color=ALARM,
+            alpha=0.07,
+            fontweight="bold",
+            zorder=0,
+        )
+    return figure
+
+
+def message_figure(title: str, message: str, *, is_simulated: bool = False) -> Figure:
+    """Return a figure that says why there is nothing to draw."""
+    figure = new_figure(6.5, 2.2, title, is_simulated=is_simulated)
+    figure.text(
+        0.5, 0.42, message, ha="center", va="center", fontsize=NORMAL, color=QUIET, wrap=True
+    )
+    return figure
+
+
+def tidy(axes: Axes, *, grid: str = "y") -> None:
+    """Give a panel its quiet frame, ticks and grid."""
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    for side in ("left", "bottom"):
+        axes.spines[side].set_color("#999999")
+    axes.tick_params(labelsize=SMALL, color="#999999", labelcolor=INK, length=3)
+    axes.set_axisbelow(True)
+    axes.patch.set_visible(False)  # lets the label of simulated data show through
+    if grid:
+        axes.grid(axis=grid, color="#ececec", linewidth=0.8)  # type: ignore[arg-type]  # "x", "y"
+
+
+def rating_axis(axes: Axes, scale: tuple[int, int], *, is_labelled: bool = True) -> None:
+    """Let the vertical axis show the whole rating scale."""
+    low, high = scale
+    axes.set_ylim(low - 0.3, high + 0.45)
+    axes.set_yticks(range(low, high + 1))
+    if is_labelled:
+        axes.set_ylabel(
+            f"perceived realism ({low} unrealistic, {high} photorealistic)",
+            fontsize=SMALL,
+            color=INK,
+        )
+
+
+def beeswarm(values: Sequence[float] | np.ndarray, *, step: float) -> np.ndarray:
+    """Return sideways offsets that lay equal values next to each other, around zero."""
+    x = np.asarray(values, dtype=float)
+    offsets = np.zeros(x.size)
+    for value in np.unique(x):
+        same = np.flatnonzero(x == value)
+        offsets[same] = (np.arange(same.size) - (same.size - 1) / 2) * step
+    return offsets
+
+
+def figure_bytes(figure: Figure, kind: str) -> bytes:
+    """Return a figure as ``png`` or ``svg``; equal figures give equal bytes."""
+    buffer = io.BytesIO()
+    metadata: dict[str, Any] = {"Date": None} if kind == "svg" else {}
+    # The salt of SVG ids is a setting of the whole process; nothing else here depends on it.
+    with mpl.rc_context({"svg.hashsalt": "ocularist", "svg.fonttype": "path"}):
+        figure.savefig(buffer, format=kind, dpi=PNG_DPI, metadata=metadata)
+    return buffer.getvalue()
+
+
+def save_figure(figure: Figure, folder: Path, name: str) -> dict[str, bytes]:
+    """Write a figure as SVG and PNG; return file name -> content."""
+    files = {f"{name}.{kind}": figure_bytes(figure, kind) for kind in ("svg", "png")}
+    for file, content in files.items():
+        (folder / file).write_bytes(content)
+    return files

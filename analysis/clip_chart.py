@@ -1,0 +1,160 @@
+"""The thesis's Figure 5.2 anew: mean realism of each eye of each clip, by distance.
+
+Every person's rating is a dot, the mean carries its t interval, and n stands above it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
+
+from analysis.chart_parts import clip_label, distance_label, draw_mean, lod_legend, records
+from analysis.chart_style import (
+    INK,
+    NO_RATINGS,
+    NORMAL,
+    QUIET,
+    SMALL,
+    beeswarm,
+    lod_colour,
+    message_figure,
+    new_figure,
+    rating_axis,
+    tidy,
+)
+from analysis.descriptive import mean_ratings, person_means
+from analysis.ordering import lod_order
+from analysis.reading import Tables
+
+TITLE: Final = "Perceived realism of each eye, per clip"
+_CLIPS_PER_ROW: Final = 10
+_SLOT_IN: Final = 0.6  # width of one eye's column
+_GAP: Final = 0.5  # between clips, in columns
+_KEYS: Final = ["distance", "clip", "eye", "lod"]
+
+
+def realism_per_clip(tables: Tables) -> Figure:
+    """Draw mean realism per clip and eye, grouped by distance, coloured by LoD."""
+    means = mean_ratings(tables.ratings, _KEYS)
+    if means.empty:
+        return message_figure(TITLE, NO_RATINGS, is_simulated=tables.is_simulated)
+    people = person_means(tables.ratings, _KEYS)
+    lods = lod_order(tables.ratings)
+    rows = _rows_of_panels(means)
+    widest = max(sum(_columns(panel) for panel in row) for row in rows)
+    figure = new_figure(
+        max(6.5, 0.9 + _SLOT_IN * widest),
+        1.0 + 2.9 * len(rows),
+        TITLE,
+        is_simulated=tables.is_simulated,
+    )
+    for band, row in zip(_bands(figure, len(rows)), rows, strict=True):
+        # A row with fewer clips is filled up, so that columns are equally wide in all rows.
+        spare = widest - sum(_columns(panel) for panel in row)
+        widths = [_columns(panel) for panel in row] + ([spare] if spare > 0.5 else [])
+        panels = band.subplots(1, len(widths), squeeze=False, sharey=True, width_ratios=widths)[0]
+        for place, (axes, panel) in enumerate(zip(panels, row, strict=False)):
+            _draw_clips(axes, panel, people, lods)
+            rating_axis(axes, tables.scale, is_labelled=place == 0)
+            axes.set_title(
+                distance_label(str(panel["distance"].iloc[0]), tables), fontsize=NORMAL, color=INK
+            )
+        for axes in panels[len(row) :]:
+            axes.set_visible(False)
+    lod_legend(figure, [lod for lod in lods if lod in set(means["lod"])], lods)
+    return figure
+
+
+def _bands(figure: Figure, count: int) -> Sequence[FigureBase]:
+    if count == 1:
+        return [figure]
+    return [band for row in figure.subfigures(count, 1, squeeze=False) for band in row]
+
+
+def _columns(panel: pd.DataFrame) -> float:
+    return len(panel) + _GAP * panel["clip"].nunique() + 0.3
+
+
+def _rows_of_panels(means: pd.DataFrame) -> list[list[pd.DataFrame]]:
+    """Cut the clips into panels of one distance each, and the panels into rows."""
+    by_distance = [own for _, own in means.groupby("distance", sort=False)]
+    if len(means[["distance", "clip"]].drop_duplicates()) <= _CLIPS_PER_ROW:
+        return [by_distance]
+    rows = []
+    for own in by_distance:
+        clips = list(dict.fromkeys(own["clip"]))
+        for start in range(0, len(clips), _CLIPS_PER_ROW):
+            rows.append([own[own["clip"].isin(clips[start : start + _CLIPS_PER_ROW])]])
+    return rows
+
+
+def _draw_clips(axes: Axes, panel: pd.DataFrame, people: pd.DataFrame, lods: Sequence[str]) -> None:
+    tidy(axes)
+    places: list[float] = []
+    names: list[str] = []
+    x = 0.0
+    for clip, own in panel.groupby("clip", sort=False):
+        for offset, row in enumerate(records(own)):
+            _draw_eye(axes, x + offset, row, _ratings_of(row, people), lods)
+            places.append(x + offset)
+            names.append(row["lod"] if pd.isna(row["eye"]) else f"{row['eye']}\n{row['lod']}")
+        if own["eye"].notna().any():
+            _name_clip(axes, x + (len(own) - 1) / 2, clip_label(str(clip)))
+        x += len(own) + _GAP
+    axes.set_xticks(places, names)
+    axes.tick_params(axis="x", length=0)
+    axes.set_xlim(-0.65, x - _GAP - 0.35)
+
+
+def _ratings_of(row: dict[str, Any], people: pd.DataFrame) -> np.ndarray:
+    is_own = np.ones(len(people), dtype=bool)
+    for key in _KEYS:
+        column = people[key]
+        is_own &= (column.isna() if pd.isna(row[key]) else column == row[key]).to_numpy(bool)
+    return people.loc[is_own, "rating"].to_numpy(dtype=float)
+
+
+def _draw_eye(
+    axes: Axes, x: float, row: dict[str, Any], ratings: np.ndarray, lods: Sequence[str]
+) -> None:
+    sideways = beeswarm(ratings, step=min(0.1, 0.8 / ratings.size))
+    axes.scatter(
+        x + sideways,
+        ratings,
+        s=9,
+        color=lod_colour(row["lod"], lods),
+        alpha=0.5,
+        linewidths=0,
+        zorder=2,
+    )
+    draw_mean(axes, x, row, lods=lods)
+    axes.annotate(
+        f"n = {row['people']}",
+        (x, 1),
+        xycoords=("data", "axes fraction"),
+        xytext=(0, -1),
+        textcoords="offset points",
+        ha="center",
+        va="top",
+        fontsize=6.5,
+        color=QUIET,
+    )
+
+
+def _name_clip(axes: Axes, x: float, name: str) -> None:
+    axes.annotate(
+        name,
+        (x, 0),
+        xycoords=("data", "axes fraction"),
+        xytext=(0, -29),
+        textcoords="offset points",
+        ha="center",
+        va="top",
+        fontsize=SMALL,
+        color=QUIET,
+    )

@@ -1,0 +1,183 @@
+"""Charts of shares: which eye was called more realistic, and who noticed a difference.
+
+Each row is a bar of all answers. Comparisons stand between the names of the two LoDs, so the part
+next to a name is the share that preferred it; the whiskers are Wilson's intervals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from analysis.chart_parts import clip_label, grouped_places, head_groups, readable_on, records
+from analysis.chart_style import (
+    CHOICE_COLOURS,
+    INK,
+    NOTICE_COLOURS,
+    QUIET,
+    SMALL,
+    message_figure,
+    new_figure,
+    tidy,
+)
+from analysis.reading import Tables
+from analysis.shares import (
+    OUTCOMES,
+    PAIR_OUTCOMES,
+    comparison_shares,
+    notice_shares,
+    pair_comparison_shares,
+    pair_notice_shares,
+)
+from analysis.table import NOTICED
+
+NO_COMPARISONS: Final = "No comparison of the two eyes has been answered yet."
+NO_NOTICES: Final = "Whether a difference was noticed has not been answered yet."
+
+
+@dataclass(frozen=True)
+class _Look:
+    """What a chart of shares shows: its title, its answers in order, and their names."""
+
+    title: str
+    answers: Sequence[str]
+    names: Sequence[str]
+    colours: Sequence[str]
+    is_two_sided: bool
+
+
+def comparisons_per_clip(tables: Tables) -> Figure:
+    """Draw, per clip, how many called the left eye, neither, or the right eye more realistic."""
+    look = _Look(
+        "Which eye is more realistic, per clip",
+        OUTCOMES,
+        ("left eye", "no difference noticed", "right eye"),
+        CHOICE_COLOURS,
+        True,
+    )
+    shares = comparison_shares(tables.comparisons)
+    return _draw(shares, tables, look, ("left_lod", "right_lod"), NO_COMPARISONS)
+
+
+def comparisons_per_pair(tables: Tables) -> Figure:
+    """Draw, per pair of LoDs, how many called the lesser, neither or the greater more real."""
+    look = _Look(
+        "Which LoD is more realistic, per pair",
+        PAIR_OUTCOMES,
+        ("lesser LoD", "no difference noticed", "greater LoD"),
+        CHOICE_COLOURS,
+        True,
+    )
+    shares = pair_comparison_shares(tables.comparisons)
+    return _draw(shares, tables, look, ("lesser", "greater"), NO_COMPARISONS)
+
+
+def noticed_per_clip(tables: Tables) -> Figure:
+    """Draw, per clip, how many noticed anything missing or different between the eyes."""
+    look = _Look("Difference noticed, per clip", NOTICED, _NOTICE_NAMES, NOTICE_COLOURS, False)
+    shares = notice_shares(tables.comparisons)
+    return _draw(shares, tables, look, ("left_lod", "right_lod"), NO_NOTICES)
+
+
+def noticed_per_pair(tables: Tables) -> Figure:
+    """Draw, per pair of LoDs, how many noticed a difference; equal LoDs show false alarms."""
+    look = _Look("Difference noticed, per pair", NOTICED, _NOTICE_NAMES, NOTICE_COLOURS, False)
+    shares = pair_notice_shares(tables.comparisons)
+    return _draw(shares, tables, look, ("lesser", "greater"), NO_NOTICES)
+
+
+_NOTICE_NAMES: Final = ("yes", "not sure", "no")
+
+
+def _draw(
+    shares: pd.DataFrame, tables: Tables, look: _Look, sides: tuple[str, str], empty: str
+) -> Figure:
+    if shares.empty:
+        return message_figure(look.title, empty, is_simulated=tables.is_simulated)
+    keys = [name for name in ("distance", "clip", *sides) if name in shares]
+    rows = [own for _, own in shares.groupby(keys, sort=False, dropna=False)]
+    first = [records(own)[0] for own in rows]
+    distances = [str(row["distance"]) for row in first]
+    places = grouped_places(distances)
+    figure = new_figure(7.0, 1.45 + 0.33 * places[-1], look.title, is_simulated=tables.is_simulated)
+    axes = figure.subplots()
+    tidy(axes, grid="x")
+    for y, own in zip(places, rows, strict=True):
+        answers = {row["answer"]: row for row in records(own)}
+        _draw_bar(axes, y, answers, look)
+    names = [_names(row, sides, look) for row in first]
+    axes.set_yticks(places, [left for left, _ in names])
+    for y, (_, right) in zip(places, names, strict=True):
+        _write_beside(axes, y, right)
+    head_groups(axes, places, distances, tables)
+    axes.set_xlim(0, 1)
+    axes.set_xticks(np.linspace(0, 1, 5), [f"{p} %" for p in (0, 25, 50, 75, 100)])
+    axes.set_xlabel("share of answers, with 95 % intervals (Wilson)", fontsize=SMALL)
+    figure.legend(
+        handles=[Patch(color=c, label=n) for n, c in zip(look.names, look.colours, strict=True)],
+        loc="outside lower center",
+        ncols=3,
+        frameon=False,
+        fontsize=SMALL,
+    )
+    return figure
+
+
+def _names(row: Mapping[str, Any], sides: tuple[str, str], look: _Look) -> tuple[str, str]:
+    left, right = str(row[sides[0]]), str(row[sides[1]])
+    clip = f"{clip_label(str(row['clip']))}:  " if "clip" in row else ""
+    count = f"n = {row['total']}"
+    if look.is_two_sided:
+        return f"{clip}{left}", f"{right}   ({count})"
+    pair = f"{left} – {right}" if left != right else f"{left} – {right} (the same)"
+    return f"{clip}{pair}", count
+
+
+def _write_beside(axes: Axes, y: float, text: str) -> None:
+    axes.text(
+        1.012,
+        y,
+        text,
+        transform=axes.get_yaxis_transform(),
+        ha="left",
+        va="center",
+        fontsize=SMALL,
+        color=INK,
+    )
+
+
+def _draw_bar(axes: Axes, y: float, answers: Mapping[str, Mapping[str, Any]], look: _Look) -> None:
+    start = 0.0
+    for answer, colour in zip(look.answers, look.colours, strict=True):
+        row = answers[answer]
+        axes.barh(y, row["share"], left=start, height=0.72, color=colour, edgecolor="white")
+        if row["share"] > 0.04:
+            axes.text(
+                start + row["share"] / 2,
+                y + 0.12,
+                f"{row['count']}",
+                ha="center",
+                va="center",
+                fontsize=7.5,
+                color=readable_on(colour),
+            )
+        start += row["share"]
+    first, last = answers[look.answers[0]], answers[look.answers[-1]]
+    _draw_whisker(axes, y, first["low"], first["high"])
+    if look.is_two_sided:
+        _draw_whisker(axes, y, 1 - last["high"], 1 - last["low"])
+
+
+def _draw_whisker(axes: Axes, y: float, low: float, high: float) -> None:
+    """Draw an interval above the middle of the bar, where it hides no number."""
+    axes.plot([low, high], [y - 0.23, y - 0.23], color="white", linewidth=2.6, alpha=0.7)
+    axes.plot([low, high], [y - 0.23, y - 0.23], color=QUIET, linewidth=1.2, zorder=3)
+    for end in (low, high):
+        axes.plot([end, end], [y - 0.3, y - 0.16], color=QUIET, linewidth=1.2, zorder=3)
