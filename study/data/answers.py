@@ -9,13 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from sqlalchemy.orm import Session
-
 from study.data import completion, events
 from study.data.database import Database
-from study.data.participants import Participant, locked, touch
+from study.data.participants import Participant, locked
 from study.data.refusals import NotWatchedError
-from study.data.schema import ParticipantRow, TrialRow
 from study.data.studies import by_id
 from study.data.trials import AMENDED, ANSWERED, Trial, trials_of
 from study.data.views import check_reached, start
@@ -57,15 +54,20 @@ def store(
         state = next(t for t in mine if t.position == position)
         if events.is_known(session, row, key):
             return Stored(new=False, is_amendment=False, trial_complete=state.is_complete)
-        check_reached(mine, position)
+        check_reached(session, trial)
         answers = _read(definition, state, given, is_final=is_final)
         start(trial, db)
         is_final = is_final and not state.is_complete
         payload = {"answers": answers, "is_final": is_final, "response_ms": response_ms}
         kind = AMENDED if state.is_complete else ANSWERED
-        events.add(session, row, key=key, kind=kind, payload=payload, trial=trial, now=db.now())
+        now = db.now()
+        event = events.append(
+            session, row, key=key, kind=kind, payload=payload, trial=trial, now=now
+        )
         if is_final:
-            _finish(db, session, row, trial)
+            trial.completed_at, trial.session_id = now, event.session_id
+            session.flush()
+            completion.complete(db, session, row)
         return Stored(
             new=True,
             is_amendment=state.is_complete,
@@ -86,10 +88,3 @@ def _read(
         )
     every = dict.fromkeys(question.id for question in definition.questions)
     return read_answers(definition.questions, {**every, **state.answers, **given})
-
-
-def _finish(db: Database, session: Session, row: ParticipantRow, trial: TrialRow) -> None:
-    trial.completed_at = db.now()
-    trial.session_id = touch(session, row, db.now()).id
-    session.flush()
-    completion.complete(db, session, row)

@@ -91,22 +91,34 @@ def add(
 ) -> bool:
     """Add an event within a transaction that holds the participant; False if the key is known."""
     if is_known(session, participant, key):
-        touch(session, participant, now)
         return False
-    sitting = touch(session, participant, now)
-    session.add(
-        EventRow(
-            participant_id=participant.id,
-            session_id=sitting.id,
-            trial_id=None if trial is None else trial.id,
-            key=key,
-            kind=kind,
-            payload=_plain(payload),
-            created_at=now,
-        )
-    )
-    session.flush()
+    append(session, participant, key=key, kind=kind, payload=payload, trial=trial, now=now)
     return True
+
+
+def append(
+    session: Session,
+    participant: ParticipantRow,
+    *,
+    key: str,
+    kind: str,
+    payload: Payload,
+    trial: TrialRow | None = None,
+    now: datetime,
+) -> EventRow:
+    """Add an event whose key is known to be new."""
+    row = EventRow(
+        participant_id=participant.id,
+        session_id=touch(session, participant, now).id,
+        trial_id=None if trial is None else trial.id,
+        key=key,
+        kind=kind,
+        payload=_plain(payload),
+        created_at=now,
+    )
+    session.add(row)
+    session.flush()
+    return row
 
 
 def is_known(session: Session, participant: ParticipantRow, key: str) -> bool:

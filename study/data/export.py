@@ -57,7 +57,8 @@ def tables(db: Database, study: Study) -> Tables:
     """Return a study's tables with the analysis's columns, the study's own questions after them."""
     definition = study.definition
     people = [person for person in collect(db, study) if _is_in(person)]
-    ratings, comparisons = [], []
+    ratings: list[Row] = []
+    comparisons: list[Row] = []
     for person in people:
         for collected in person.trials:
             if collected.trial.started_at is not None:

@@ -167,6 +167,8 @@ def touch(session: Session, row: ParticipantRow, now: datetime) -> SessionRow:
     ).one()
     if now - sitting.last_seen_at > IDLE:
         sitting = _open_session(session, row, now, sitting.device, number=sitting.number + 1)
+    elif now - sitting.last_seen_at < SEEN_AGAIN:
+        return sitting
     sitting.last_seen_at = row.last_seen_at = now
     if row.size is not None and row.completed_at is None:
         row.lease_until = now + IDLE

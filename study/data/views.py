@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
 from study.data import events
 from study.data.database import Database
 from study.data.events import Recorded
 from study.data.participants import Participant, locked
 from study.data.refusals import NotReachedError
 from study.data.schema import TrialRow
-from study.data.trials import PLAYED, trials_of
+from study.data.trials import PLAYED
 
 
 def record(
@@ -27,7 +30,7 @@ def record(
     with db.writing() as session:
         row = locked(session, participant)
         trial = events.trial_row(session, row.id, position)
-        check_reached(trials_of(session, row.id), position)
+        check_reached(session, trial)
         start(trial, db)
         return Recorded(
             events.add(session, row, key=key, kind=PLAYED, payload=play, trial=trial, now=db.now())
@@ -40,10 +43,15 @@ def start(trial: TrialRow, db: Database) -> None:
         trial.started_at = db.now()
 
 
-def check_reached(mine: tuple[Any, ...], position: int) -> None:
+def check_reached(session: Session, trial: TrialRow) -> None:
     """Raise NotReachedError for a trial behind one that is still open."""
-    if any(trial.position < position and not trial.is_complete for trial in mine):
-        raise NotReachedError(f"trial {position} comes after the ones before it")
+    open_before = select(TrialRow.id).where(
+        TrialRow.participant_id == trial.participant_id,
+        TrialRow.position < trial.position,
+        TrialRow.completed_at.is_(None),
+    )
+    if session.scalar(open_before.limit(1)) is not None:
+        raise NotReachedError(f"trial {trial.position} comes after the ones before it")
 
 
 def is_certified(play: Mapping[str, Any]) -> bool | None:
