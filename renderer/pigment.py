@@ -1,0 +1,214 @@
+"""The colours of an iris: seven families as data, and how tone and pigment make an albedo.
+
+Anchors are artist values in sRGB (reference/eye-rendering.md, 1.5), everything else is linear
+Rec. 709. A single scalar, melanin, both colours the surface and thickens its pigmented sheet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float32]
+Rgb = tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Family:
+    """One colour family.
+
+    ``stops`` are sRGB colours at the pupil's edge, the middle of the pupillary zone, the
+    collarette, the middle and outer ciliary zone and the rim. ``core`` is a second pigment
+    around the pupil (central heterochromia) of share ``core_share`` reaching ``core_mm`` from the
+    pupil. ``veil`` is how far a continuous pigmented sheet hides the fibres; ``contrast`` scales
+    the luminance between crest and gap; ``freckles`` and ``crypts`` are mean rates.
+    """
+
+    stops: tuple[Rgb, Rgb, Rgb, Rgb, Rgb, Rgb]
+    core: Rgb
+    core_share: float
+    core_mm: float
+    pigment: Rgb
+    veil: float
+    contrast: float
+    pallor: float
+    freckles: float
+    crypts: float
+
+
+FAMILIES: Final[Mapping[str, Family]] = MappingProxyType(
+    {
+        "blue": Family(
+            stops=(
+                (122, 124, 116),
+                (126, 141, 148),
+                (150, 170, 188),
+                (108, 138, 170),
+                (92, 122, 156),
+                (46, 62, 88),
+            ),
+            core=(158, 132, 86),
+            core_share=0.30,
+            core_mm=0.8,
+            pigment=(120, 84, 46),
+            veil=0.08,
+            contrast=1.0,
+            pallor=0.20,
+            freckles=0.8,
+            crypts=1.0,
+        ),
+        "grey": Family(
+            stops=(
+                (122, 118, 104),
+                (132, 134, 128),
+                (160, 166, 168),
+                (130, 140, 148),
+                (112, 122, 132),
+                (56, 64, 74),
+            ),
+            core=(142, 122, 86),
+            core_share=0.30,
+            core_mm=0.7,
+            pigment=(118, 86, 52),
+            veil=0.08,
+            contrast=0.95,
+            pallor=0.22,
+            freckles=0.8,
+            crypts=1.0,
+        ),
+        "green": Family(
+            stops=(
+                (128, 104, 54),
+                (130, 114, 64),
+                (126, 126, 80),
+                (102, 116, 80),
+                (88, 102, 72),
+                (46, 56, 44),
+            ),
+            core=(140, 104, 52),
+            core_share=0.55,
+            core_mm=1.1,
+            pigment=(112, 74, 34),
+            veil=0.14,
+            contrast=0.95,
+            pallor=0.12,
+            freckles=1.4,
+            crypts=0.9,
+        ),
+        "hazel": Family(
+            stops=(
+                (132, 88, 42),
+                (140, 96, 46),
+                (134, 104, 56),
+                (106, 104, 66),
+                (92, 94, 62),
+                (52, 50, 36),
+            ),
+            core=(138, 90, 42),
+            core_share=0.75,
+            core_mm=1.5,
+            pigment=(104, 62, 26),
+            veil=0.25,
+            contrast=0.95,
+            pallor=0.08,
+            freckles=2.2,
+            crypts=0.85,
+        ),
+        "amber": Family(
+            stops=(
+                (136, 84, 32),
+                (152, 98, 38),
+                (174, 118, 50),
+                (160, 106, 44),
+                (138, 88, 36),
+                (76, 46, 22),
+            ),
+            core=(150, 82, 26),
+            core_share=0.45,
+            core_mm=1.2,
+            pigment=(112, 62, 24),
+            veil=0.30,
+            contrast=0.9,
+            pallor=0.06,
+            freckles=1.5,
+            crypts=0.8,
+        ),
+        "brown": Family(
+            stops=(
+                (88, 52, 28),
+                (100, 60, 32),
+                (122, 78, 44),
+                (92, 58, 34),
+                (78, 48, 29),
+                (42, 26, 17),
+            ),
+            core=(110, 66, 33),
+            core_share=0.45,
+            core_mm=1.3,
+            pigment=(58, 34, 20),
+            veil=0.50,
+            contrast=1.0,
+            pallor=0.03,
+            freckles=1.2,
+            crypts=0.7,
+        ),
+        "dark-brown": Family(
+            stops=(
+                (50, 30, 19),
+                (56, 34, 22),
+                (66, 42, 28),
+                (52, 33, 23),
+                (45, 29, 20),
+                (27, 18, 13),
+            ),
+            core=(66, 38, 21),
+            core_share=0.40,
+            core_mm=1.3,
+            pigment=(34, 22, 15),
+            veil=0.62,
+            contrast=1.05,
+            pallor=0.02,
+            freckles=0.6,
+            crypts=0.6,
+        ),
+    }
+)
+
+# Bare pigment epithelium behind the pupil and at the ruff: "near black in every eye"
+# (Baranoski and Lam 2007, after reference/eye-rendering.md, 1.5).
+IPE_ALBEDO: Final = (0.004, 0.003, 0.0025)
+RUFF: Final[Rgb] = (62, 40, 26)
+
+
+def family(colour: str) -> Family:
+    """Return the record of a colour family; raises ValueError naming those that exist."""
+    if colour not in FAMILIES:
+        raise ValueError(f'iris colour: unknown "{colour}"; choose one of {", ".join(FAMILIES)}')
+    return FAMILIES[colour]
+
+
+def srgb_to_linear(values: npt.ArrayLike) -> Array:
+    """Decode sRGB values from 0 to 255 to linear 0 to 1 (IEC 61966-2-1)."""
+    v = np.asarray(values, np.float64) / 255.0
+    return np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4).astype(np.float32)
+
+
+def linear_to_srgb(values: npt.ArrayLike) -> Array:
+    """Encode linear 0 to 1 as sRGB 0 to 1 (IEC 61966-2-1), clipped."""
+    v = np.clip(np.asarray(values, np.float32), 0.0, 1.0)
+    return np.where(v <= 0.0031308, v * 12.92, 1.055 * v ** (1 / 2.4) - 0.055).astype(np.float32)
+
+
+def luminance(rgb: Array) -> Array:
+    """Return Rec. 709 luminance of linear colours (..., 3)."""
+    y: Array = (
+        np.float32(0.2126) * rgb[..., 0]
+        + np.float32(0.7152) * rgb[..., 1]
+        + np.float32(0.0722) * rgb[..., 2]
+    )
+    return y
