@@ -17,7 +17,7 @@ from renderer.makehuman import Floats, Mesh, base_mesh, phenotype, target_offset
 from renderer.rig import Rig, fit_rig, pose_vertices, rotation
 
 # MakeHuman's globes have 15 mm radius, ours 11.75: her lids meet ours when the head steps back.
-SET_BACK_MM: Final = 4.2
+SET_BACK_MM: Final = 4.8
 PHENOTYPE: Final = {"gender": 0.1, "age": 0.56, "muscle": 0.5, "weight": 0.47, "proportions": 0.7}
 RACES: Final = {"caucasian": 0.75, "asian": 0.13, "african": 0.12}
 # Away from the average that MakeHuman starts from: an average of faces looks like a doll.

@@ -30,7 +30,7 @@ def _step(vertices: Floats, quads: Indices) -> tuple[Floats, Indices]:
     beside = _scatter(edge_of, np.repeat(face_points[:, None], 4, axis=1), len(edges))
     inner = uses == 2
     edge_points = np.where(inner[:, None], (2 * middles + beside) / 4, middles)
-    corners = _move_corners(vertices, quads, face_points, edges, middles, inner)
+    corners = _move_corners(vertices, quads, face_points, edges=edges, middles=middles, inner=inner)
     offsets = count + np.arange(faces)
     first = count + faces
     children = [
@@ -47,6 +47,7 @@ def _move_corners(
     vertices: Floats,
     quads: Indices,
     face_points: Floats,
+    *,
     edges: Indices,
     middles: Floats,
     inner: np.ndarray[tuple[int], np.dtype[np.bool_]],

@@ -1,0 +1,232 @@
+"""The main character's skin as meshes: smooth face, fine lid patches, corners of the eyes.
+
+Pure numpy, world space in mm. Each part carries what the colour of skin depends on; light and
+paint are put on by ``skin`` and ``skin_light``.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import Final
+
+import imageio.v3 as iio
+import numpy as np
+
+from renderer import lid_fit
+from renderer.camera import eye_centre_mm
+from renderer.caruncle import caruncle, outer_membrane
+from renderer.character import SET_BACK_MM, Figure, figure
+from renderer.makehuman import Floats, Indices, Mesh, data_folder
+from renderer.subdivide import subdivide
+
+FINE_BOX_MM: Final = ((-98.0, -68.0, -75.0), (98.0, 62.0, 60.0))  # what close views can show
+LOWEST_MM: Final = -215.0  # below it the collar hides the neck
+SOCKET_MM: Final = 18.2  # around MakeHuman's globe: everything nearer is socket or inner lid
+
+
+@dataclass(frozen=True)
+class SkinPart:
+    """One mesh of skin: (n, 3) points and unit normals, (m, 3) triangles, and per vertex
+
+    ``lips`` 0 to 1; ``lid`` 0 on the face to 1 on the lids; ``margin`` 1 on the wet rim of a lid;
+    ``caruncle`` 1 on it; ``wet`` 1 where tears stand; ``along_mm`` (n, 2) along and
+    across the lid.
+    """
+
+    points_mm: Floats
+    normals: Floats
+    triangles: Indices
+    lips: Floats
+    lid: Floats
+    margin: Floats
+    caruncle: Floats
+    wet: Floats
+    along_mm: Floats
+
+
+@dataclass(frozen=True)
+class FaceMesh:
+    """All skin: ``fine`` with ``rest`` for close views, ``coarse`` from further away."""
+
+    fine: SkinPart
+    rest: SkinPart
+    coarse: SkinPart
+    patches: tuple[SkinPart, SkinPart]
+    corners: tuple[SkinPart, SkinPart]
+    lids: tuple[lid_fit.LidPatch, lid_fit.LidPatch]
+
+
+@functools.cache
+def face_mesh() -> FaceMesh:
+    """Build the skin of the main character."""
+    body = figure()
+    vertices, quads = _head_cage(body)
+    level1, quads1 = subdivide(vertices, quads)
+    level2, quads2 = subdivide(level1, quads1)
+    sockets = tuple(_socket(level2, quads2, eye) for eye in (0, 1))
+    lids = (lid_fit.fit_lids(sockets[0]), lid_fit.fit_lids(sockets[1]))
+    quads1 = quads1[~_in_eye(level1, quads1)]
+    quads2 = quads2[~_in_eye(level2, quads2)]
+    near1, near2 = _in_box(level1, quads1, inset_mm=6.0), _in_box(level2, quads2)
+    return FaceMesh(
+        fine=_part(level2, quads2[near2]),
+        rest=_part(level1, quads1[~near1]),
+        coarse=_part(level1, quads1),
+        patches=(_patch(lids[0], 0), _patch(lids[1], 1)),
+        corners=(_corners(0), _corners(1)),
+        lids=lids,
+    )
+
+
+def to_world(points: Floats, eye: int) -> Floats:
+    """Carry patch space (temple at +x) of the viewer's left (0) or right (1) eye to world."""
+    return np.asarray(points * [1.0 if eye else -1.0, 1.0, 1.0] + eye_centre_mm(eye))
+
+
+def to_patch(points: Floats, eye: int) -> Floats:
+    """Carry world space to patch space."""
+    return np.asarray((points - eye_centre_mm(eye)) * [1.0 if eye else -1.0, 1.0, 1.0])
+
+
+def triangles_of(quads: Indices) -> Indices:
+    """Split quads (m, 4) into triangles (2 m, 3)."""
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def vertex_normals(points: Floats, triangles: Indices) -> Floats:
+    """Return area-weighted unit normals (n, 3)."""
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    faces = np.cross(b - a, c - a)
+    total = np.stack(
+        [
+            np.bincount(triangles.ravel(), np.repeat(faces[:, k], 3), minlength=len(points))
+            for k in range(3)
+        ],
+        axis=1,
+    )
+    return np.asarray(total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12))
+
+
+def _head_cage(body: Figure) -> tuple[Floats, Indices]:
+    """Return head and neck with the lips' mask as a fourth column, mouth's inside taken away."""
+    mesh = body.mesh
+    quads = mesh.quads[mesh.quads_of("body")]
+    centre = body.vertices_mm[quads].mean(axis=1)
+    is_head = (centre[:, 1] > LOWEST_MM) & (np.abs(centre[:, 0]) < 150.0)
+    column = np.column_stack([body.vertices_mm, _mask(mesh, "lips")])
+    return column, quads[is_head]
+
+
+def _mask(mesh: Mesh, name: str) -> Floats:
+    """Sample one of MakeHuman's region masks at the mesh's vertices, 0 to 1."""
+    picture = iio.imread(data_folder() / "mpfb2" / "textures" / f"mpfb_{name}.jpg") / 255.0
+    rows = np.clip((1 - mesh.uv[:, 1]) * picture.shape[0], 0, picture.shape[0] - 1).astype(int)
+    columns = np.clip(mesh.uv[:, 0] * picture.shape[1], 0, picture.shape[1] - 1).astype(int)
+    values = np.zeros(len(mesh.vertices_mm))
+    values[mesh.quads.ravel()] = picture[rows, columns][mesh.uv_quads.ravel()]
+    return values
+
+
+def _socket(level: Floats, quads: Indices, eye: int) -> lid_fit.Socket:
+    points = level[:, :3]
+    normals = vertex_normals(points, triangles_of(quads))
+    local = to_patch(points, eye)
+    x, y, z = local.T
+    outside = np.linalg.norm(local + [0.0, 0.0, SET_BACK_MM], axis=1) > SOCKET_MM
+    near = (np.abs(y) < 34.0) & (x > -31.0) & (x < 36.0) & (z > -25.0)
+    return lid_fit.Socket(local[outside & near & (normals[:, 2] > 0.05)])
+
+
+def _in_eye(level: Floats, quads: Indices) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Return which quads the patches replace: inside the outline, or in the socket behind."""
+    inside = np.zeros(len(quads), dtype=bool)
+    temple, nose, up, down = lid_fit.OUTLINE_MM
+    for eye in (0, 1):
+        x, y, z = to_patch(level[quads][:, :, :3].mean(axis=1), eye).T
+        ratio = (x / np.where(x > 0, temple, nose)) ** 2 + (y / np.where(y > 0, up, down)) ** 2
+        inside |= (ratio < 1.0) & (z > -40.0)
+    return inside
+
+
+def _in_box(
+    level: Floats, quads: Indices, *, inset_mm: float = 0.0
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Return which quads close views can show; an inset lets the two meshes overlap."""
+    centre = level[quads][:, :, :3].mean(axis=1)
+    low, high = np.array(FINE_BOX_MM) + np.array([[inset_mm], [-inset_mm]])
+    return np.asarray(((centre > low) & (centre < high)).all(axis=1))
+
+
+def _part(level: Floats, quads: Indices) -> SkinPart:
+    used, rows = np.unique(quads, return_inverse=True)
+    triangles = triangles_of(rows.reshape(-1, 4))
+    points = level[used, :3]
+    zero = np.zeros(len(points))
+    whole = vertex_normals(level[:, :3], triangles_of(quads))[used]
+    return SkinPart(
+        points,
+        whole,
+        triangles,
+        np.clip(level[used, 3], 0, 1),
+        zero,
+        zero,
+        zero,
+        zero,
+        np.zeros((len(points), 2)),
+    )
+
+
+def _patch(lid: lid_fit.LidPatch, eye: int) -> SkinPart:
+    around, along, _ = lid.points_mm.shape
+    points = to_world(lid.points_mm.reshape(-1, 3), eye)
+    triangles = triangles_of(lid_fit.grid_quads(around, along))
+    if eye == 0:
+        triangles = triangles[:, ::-1]
+    across = lid.across_mm
+    edge = across[:, lid.rim_row][:, None]
+    margin = 1.0 - _ramp(across, edge * 0.75, edge * 1.15)
+    wet = 1.0 - _ramp(across, edge * 0.15, edge * 0.5)
+    beyond = across - edge
+    total = beyond[:, -1:]
+    fade = 1.0 - _ramp(beyond, 0.25 * total, 0.85 * total)
+    turn = np.broadcast_to(np.arange(around)[:, None] * (68.0 / around), across.shape)
+    zero = np.zeros(points.shape[0])
+    return SkinPart(
+        points,
+        vertex_normals(points, triangles),
+        triangles,
+        zero,
+        fade.ravel(),
+        margin.ravel(),
+        zero,
+        wet.ravel(),
+        np.stack([turn, across], axis=-1).reshape(-1, 2),
+    )
+
+
+def _ramp(x: Floats, start: Floats, end: Floats) -> Floats:
+    t = np.clip((x - start) / (end - start), 0, 1)
+    return np.asarray(t * t * (3 - 2 * t))
+
+
+def _corners(eye: int) -> SkinPart:
+    inner, inner_quads, bump = caruncle()
+    outer, outer_quads = outer_membrane()
+    points = to_world(np.concatenate([inner, outer]), eye)
+    triangles = triangles_of(np.concatenate([inner_quads, outer_quads + len(inner)]))
+    if eye == 0:
+        triangles = triangles[:, ::-1]
+    one = np.ones(len(points))
+    pink = np.concatenate([bump, np.zeros(len(outer))])
+    return SkinPart(
+        points,
+        vertex_normals(points, triangles),
+        triangles,
+        0 * one,
+        one,
+        one,
+        pink,
+        one,
+        points[:, :2].copy(),
+    )

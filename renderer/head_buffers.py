@@ -1,0 +1,102 @@
+"""The head's meshes on the GPU: one vertex buffer, index ranges in cells that a view may skip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import moderngl
+import numpy as np
+
+from renderer.camera import Matrix
+from renderer.makehuman import Floats, Indices
+from renderer.program import Program
+
+CELL_MM: Final = 36.0
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Runs of triangles: ``first`` and ``count`` in indices, bounding spheres in mm."""
+
+    first: Indices
+    count: Indices
+    centre_mm: Floats
+    radius_mm: Floats
+
+    def visible(self, clip: Floats) -> list[tuple[int, int]]:
+        """Return the runs (first, count) whose spheres touch the frustum, neighbours merged."""
+        planes = np.concatenate([clip[3] + clip[:3], clip[3] - clip[:3]]).reshape(6, 4)
+        planes = planes / np.linalg.norm(planes[:, :3], axis=1, keepdims=True)
+        away = self.centre_mm @ planes[:, :3].T + planes[:, 3]
+        inside = (away > -self.radius_mm[:, None]).all(axis=1)
+        runs: list[tuple[int, int]] = []
+        for first, count in zip(self.first[inside], self.count[inside], strict=True):
+            if runs and sum(runs[-1]) == first:
+                runs[-1] = (runs[-1][0], runs[-1][1] + int(count))
+            else:
+                runs.append((int(first), int(count)))
+        return runs
+
+
+def sort_into_cells(points: Floats, triangles: Indices) -> tuple[Indices, Cells]:
+    """Return the triangles ordered by cubes of CELL_MM, and the cubes' runs."""
+    centres = points[triangles].mean(axis=1)
+    _, cell = np.unique(np.floor(centres / CELL_MM).astype(int), axis=0, return_inverse=True)
+    order = np.argsort(cell.ravel(), kind="stable")
+    ordered, cell = triangles[order], cell.ravel()[order]
+    starts = np.flatnonzero(np.diff(cell, prepend=-1))
+    counts = np.diff(np.append(starts, len(ordered)))
+    middles, radii = [], []
+    for start, count in zip(starts, counts, strict=True):
+        corners = points[ordered[start : start + count].ravel()]
+        middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+        middles.append(middle)
+        radii.append(np.linalg.norm(corners - middle, axis=1).max())
+    return ordered, Cells(starts * 3, counts * 3, np.array(middles), np.array(radii))
+
+
+class CellMesh:
+    """Triangles of one vertex buffer, drawn cell by cell with several programs."""
+
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        points: Floats,
+        triangles: Indices,
+        *,
+        buffers: list[tuple[moderngl.Buffer, str, list[str]]],
+    ) -> None:
+        """``buffers``: vertex buffers with moderngl's format and the attributes' names."""
+        ordered, self.cells = sort_into_cells(points, triangles)
+        self._gl = gl
+        self._index = gl.buffer(ordered.astype(np.int32).tobytes())
+        self._buffers = buffers
+        self._arrays: dict[int, moderngl.VertexArray] = {}
+
+    def draw(self, program: Program, clip: Matrix | Floats) -> None:
+        """Draw the cells that a world-to-clip matrix can show."""
+        array = self._array(program)
+        for first, count in self.cells.visible(np.asarray(clip, dtype=float)):
+            array.render(vertices=count, first=first)
+
+    def _array(self, program: Program) -> moderngl.VertexArray:
+        key = program.gl_program.glo
+        if key not in self._arrays:
+            content = [
+                (buffer, *_used(program, layout, names)) for buffer, layout, names in self._buffers
+            ]
+            self._arrays[key] = self._gl.vertex_array(
+                program.gl_program, [entry for entry in content if len(entry) > 2], self._index
+            )
+        return self._arrays[key]
+
+
+def _used(program: Program, layout: str, names: list[str]) -> tuple[str, ...]:
+    """Replace attributes that a program does not read by padding."""
+    parts = [
+        part if name in program.gl_program else f"{int(part[:-1]) * 4}x"
+        for part, name in zip(layout.split(), names, strict=True)
+    ]
+    active = [name for name in names if name in program.gl_program]
+    return (" ".join(parts), *active)

@@ -1,0 +1,3 @@
+// Provides: nothing but the depth that the rasteriser writes.
+
+void main() {}
