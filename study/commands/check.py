@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
 from study.commands.options import add_study
@@ -30,7 +30,7 @@ def run(options: argparse.Namespace) -> int:
     from study.design.definition import read_definition
 
     definition = read_definition(options.study)
-    for line in [*summary(definition), "", *audit(definition)]:
+    for line in [*summary(definition), "", *audit_lines(definition)]:
         print(line)
     return 0
 
@@ -58,15 +58,24 @@ def summary(definition: StudyDefinition) -> Iterator[str]:
         yield f"{clip.id:24}{clip.distance:14}{clip.left:18}{clip.right:18}{mark}".rstrip()
 
 
-def audit(definition: StudyDefinition) -> Iterator[str]:
-    """Yield what the design can and cannot show, one wrapped statement after the other."""
-    from analysis.audit import ShownClip, audit_design
+def audit_lines(definition: StudyDefinition) -> Iterator[str]:
+    """Yield what the design can and cannot show, then what is worth a second look."""
+    from study.design.audit import cell_table, statements, warnings
 
-    shown = [
-        ShownClip(clip.id, clip.distance, clip.left, clip.right) for clip in definition.trial_clips
-    ]
+    yield "Eyes shown per distance and LoD:"
+    yield from (f"  {line}" for line in cell_table(definition))
+    yield ""
     yield "What this design shows and what it cannot answer:"
-    for statement in audit_design(shown).statements():
+    yield from _listed(statements(definition))
+    found = warnings(definition)
+    if found:
+        yield ""
+        yield "Worth a second look:"
+        yield from _listed(found)
+
+
+def _listed(sentences: Iterable[str]) -> Iterator[str]:
+    for sentence in sentences:
         yield from textwrap.wrap(
-            statement, WIDTH, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False
+            sentence, WIDTH, initial_indent="- ", subsequent_indent="  ", break_on_hyphens=False
         )

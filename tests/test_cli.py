@@ -1,0 +1,195 @@
+"""The entry point: every command explains itself, errors are one line, nothing heavy is loaded."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from study.cli import COMMANDS, build_parser, main
+
+ROOT = Path(__file__).parent.parent
+RATINGS = "participant,lod,rating\n" + "".join(
+    f"P{person},{lod},{rating}\n"
+    for person in range(1, 7)
+    for rating, lod in enumerate(("low", "medium", "high", "ultra"), start=1 + person % 2)
+)
+
+
+def fails_with(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """Run a command that must fail; return the one line it says on stderr."""
+    try:
+        status = main(arguments)
+    except SystemExit as ending:  # argparse's own way
+        status = int(ending.code or 0)
+    out, err = capsys.readouterr()
+    assert status > 0
+    assert out == ""
+    assert len(err.splitlines()) == 1, err
+    return err.strip()
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself(
+    command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
+    with pytest.raises(SystemExit) as ending:
+        main([command, "--help"])
+    assert ending.value.code == 0
+    said = capsys.readouterr().out
+    assert said.startswith(f"usage: ocularist {command}")
+    assert len(said.split("\n\n")[1]) > 40  # a sentence on what it does
+
+
+def test_the_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    said = capsys.readouterr().out
+    for command in COMMANDS:
+        assert f"\n    {command}" in said
+
+
+def test_an_unknown_command_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    said = fails_with(capsys, "rendr")
+    assert said.startswith("ocularist: argument COMMAND: invalid choice: 'rendr'")
+    assert said.endswith("(see ocularist --help)")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("check", "thesi"), 'did you mean "thesis"?'),
+        (("still", "--effect", "reflection=hihg"), 'unknown level "hihg"'),
+        (("still", "--effect", "reflektion=high"), 'unknown effect "reflektion"; choose one of'),
+        (("still", "--effect", "medium"), "no effect with a level; write NAME=LEVEL"),
+        (("still", "--only-effect", "shine"), 'unknown effect "shine"'),
+        (("still", "--distance", "middle"), "argument --distance: invalid choice: 'middle'"),
+        (("still", "--size", "1920*1080"), "write width x height in pixels, like 1280x720"),
+        (("still", "--size", "641x360"), "width: 641 is odd"),
+        (("still", "--pupil", "12"), "pupil_mm: 12.0 lies outside 1.5 to 8.0"),
+        (("still", "--iris", "purple"), '"purple" is no iris; write a seed, a colour'),
+        (("still", "--out", "eye.jpg"), 'eye.jpg: unknown kind of picture ".jpg"'),
+        (("render", "--only", "8"), 'unknown clip "8"; the study has practice, 1, 2, 3'),
+        (("serve", "--port", "70000"), '"70000" is no port; write a number from 1 to 65535'),
+        (("run", "--tls-cert", "a.pem"), "TLS needs both --tls-cert and --tls-key"),
+        (("export", "--database", "sqlite:///none.sqlite3"), "none.sqlite3: no such database"),
+        (("analyse", "none.csv"), "none.csv: not found"),
+    ],
+    ids=lambda value: "-".join(value) if isinstance(value, tuple) else "",
+)
+def test_an_error_is_one_clear_line(
+    arguments: tuple[str, ...],
+    words: str,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = fails_with(capsys, *arguments)
+    assert said.startswith(f"ocularist {arguments[0]}: ")
+    assert words in said
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_every_fault_of_a_study_file_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (ROOT / "study/design/definitions/thesis.toml").read_text(encoding="utf-8")
+    faulty = tmp_path / "faulty.toml"
+    faulty.write_text(
+        text.replace('reflection = "high"', 'reflection = "hihg"').replace("fps = 30", "fps = 0")
+    )
+    assert main(["check", str(faulty)]) == 1
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2
+    assert all(line.startswith("ocularist check: faulty.toml: ") for line in lines)
+    assert any("lods.high.reflection" in line for line in lines)
+    assert any("orbit.fps" in line for line in lines)
+
+
+def test_our_own_mistakes_show_their_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(_name: str) -> None:
+        raise KeyError("a mistake of ours")
+
+    monkeypatch.setattr("study.design.definition.read_definition", fail)
+    with pytest.raises(KeyError):
+        main(["check"])
+
+
+def test_a_traceback_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OCULARIST_TRACEBACK", "1")
+    with pytest.raises(ValueError, match="thesi"):
+        main(["check", "thesi"])
+
+
+def run_without(blocked: str, code: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run code in a Python where some packages cannot be imported."""
+    block = f"import sys\nfor name in {blocked.split()!r}: sys.modules[name] = None\n"
+    return subprocess.run(
+        [sys.executable, "-c", block + code],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "MPLCONFIGDIR": str(folder)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_analyse_needs_neither_web_nor_database_nor_gl(tmp_path: Path) -> None:
+    (tmp_path / "ratings.csv").write_text(RATINGS)
+    done = run_without(
+        "fastapi starlette uvicorn sqlalchemy alembic argon2 moderngl glcontext imageio",
+        "from study.cli import main; sys.exit(main(['analyse', 'ratings.csv', '--out', 'report']))",
+        tmp_path,
+    )
+    assert done.returncode == 0, done.stderr
+    assert list((tmp_path / "report").glob("*.html"))
+
+
+def test_a_web_machine_needs_no_gl(tmp_path: Path) -> None:
+    done = run_without(
+        "moderngl glcontext", "from study.site.app import create_app; print('made')", tmp_path
+    )
+    assert done.stdout == "made\n", done.stderr
+
+
+def test_a_render_machine_needs_no_database_and_no_web(tmp_path: Path) -> None:
+    done = run_without(
+        "fastapi starlette uvicorn sqlalchemy alembic",
+        "from study.commands.render import wanted\n"
+        "from study.design.definition import read_definition\n"
+        "from renderer.batch import render_clip\n"
+        "from renderer.studio import Studio\n"
+        "print(len(wanted(read_definition('thesis'), only=['1'], sizes=None, fps=None)))",
+        tmp_path,
+    )
+    assert done.stdout == "4\n", done.stderr
+
+
+def test_a_missing_part_is_named(tmp_path: Path) -> None:
+    done = run_without("uvicorn", "from study.cli import main; sys.exit(main(['serve']))", tmp_path)
+    assert done.returncode == 1
+    assert done.stderr == (
+        "ocularist serve: needs uvicorn, which is not installed here; pip install uvicorn\n"
+    )
+
+
+def test_building_the_parser_loads_nothing_heavy() -> None:
+    heavy = "numpy pandas matplotlib scipy moderngl fastapi sqlalchemy pydantic"
+    code = (
+        "import sys; from study.cli import build_parser; build_parser();"
+        f"print(*(set({heavy.split()!r}) & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.split() == []
+
+
+def test_the_parser_knows_the_commands_of_the_design() -> None:
+    options = build_parser().parse_args(["researcher", "add", "ada"])
+    assert (options.command, options.action, options.name) == ("researcher", "add", "ada")
