@@ -83,3 +83,11 @@ def test_every_command_of_the_readme_exists() -> None:
     assert list(dict.fromkeys(re.findall(r"^\| `ocularist (\w+)", text, flags=re.MULTILINE))) == [
         *COMMANDS
     ]
+
+
+def test_every_setting_is_explained() -> None:
+    text = (ROOT / "docs" / "running.md").read_text(encoding="utf-8")
+    source = (ROOT / "study" / "settings.py").read_text(encoding="utf-8")
+    named = set(re.findall(r"OCULARIST_[A-Z]+", source))
+    assert named
+    assert named <= set(re.findall(r"`(OCULARIST_[A-Z]+)`", text))
