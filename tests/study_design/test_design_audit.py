@@ -1,0 +1,116 @@
+"""What a design shows, what it cannot answer, and which differences no pixel shows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from renderer.detail import EFFECTS, LEVELS, Detail
+from study.design import audit
+from study.design.definition import parse_definition, read_definition
+from study.design.visibility import hidden_effects, visible_from
+
+
+def test_the_thesis_shows_9_of_16_cells_and_one_mirrored_pair() -> None:
+    lines = audit.statements(read_definition("thesis"))
+    assert lines[0] == "One visit has 8 clips (1 for practice) and takes about 9 minutes."
+    assert "9 of 16 combinations of LoD and distance were shown." in lines
+    assert "Shown with the eyes exchanged: 4 and 6." in lines
+    assert any(line.startswith("No clip showed the same LoD in both eyes") for line in lines)
+    assert any(line.startswith("No comparison links two distances") for line in lines)
+
+
+def test_cells_count_the_eyes_that_are_shown() -> None:
+    assert [line.split() for line in audit.cell_table(read_definition("thesis"))] == [
+        ["distance", "low", "medium", "high", "ultra"],
+        ["macroscopic", "1", "2", "2", "1"],
+        ["near", "3", "1", "-", "2"],
+        ["medium", "-", "-", "-", "-"],
+        ["far", "1", "-", "-", "1"],
+    ]
+
+
+def test_the_recommended_study_leaves_no_cell_empty() -> None:
+    lod = read_definition("lod")
+    facts = audit.audit(lod)
+    assert facts.empty_cells == ()
+    assert facts.catch_clips == 4
+    assert len(facts.mirrored) == 4
+    assert all(len(groups) == 1 for groups in facts.linked.values())
+
+
+def test_warnings_name_what_is_worth_a_second_look(raw: dict[str, Any]) -> None:
+    raw["contact"] = {"name": "Somebody"}
+    raw["practice"] = []
+    raw["orbit"]["directions"] = ["leftward"]
+    raw["factors"] = [
+        {"distances": ["far"], "lods": ["low"], "against": ["ultra"], "sides": "given"}
+    ]
+    found = audit.warnings(parse_definition(raw))
+    starts = [
+        "contact: neither email nor details",
+        "practice: no clip",
+        "orbit.directions: only one",
+        "questions: none is called rating_right",
+        "questions: none is called comparison",
+        "lods.no-caustics: no clip shows it",
+    ]
+    assert [line[: len(start)] for line, start in zip(found, starts, strict=False)] == starts
+
+
+def test_far_clips_are_warned_of_differences_below_a_pixel() -> None:
+    found = [line for line in audit.warnings(read_definition("thesis")) if "clip 7" in line]
+    assert found == [
+        "clip 7 (far, ultra | low) at 1280x720: the iris is 8 px wide; differences smaller than a "
+        "pixel: texture (from 128 px), refraction (from 9 px), subsurface (from 39 px), "
+        "tessellation (from 14 px), sclera (from 117 px)",
+        "clip 7 (far, ultra | low) at 1920x1080: the iris is 12 px wide; differences smaller than "
+        "a pixel: texture (from 128 px), subsurface (from 39 px), tessellation (from 14 px), "
+        "sclera (from 117 px)",
+    ]
+
+
+def test_a_clip_in_which_nothing_can_be_seen_says_so(raw: dict[str, Any]) -> None:
+    raw["lods"]["smooth"] = {"base": "ultra", "tessellation": "high"}
+    raw["clips"] = [{"id": "x", "distance": "far", "left": "ultra", "right": "smooth"}]
+    found = [line for line in audit.warnings(parse_definition(raw)) if "clip x" in line]
+    assert len(found) == 2
+    assert all(line.endswith("tessellation (from 200 px); nothing else differs") for line in found)
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_equal_levels_differ_nowhere(effect: str) -> None:
+    for level in LEVELS:
+        same = Detail.uniform(level)
+        assert visible_from(effect, same, same) is None
+
+
+@pytest.mark.parametrize(
+    ("effect", "one", "other", "iris_px"),
+    [
+        ("texture", "off", "low", 12),
+        ("texture", "high", "ultra", 1024),
+        ("refraction", "medium", "high", 9),
+        ("refraction", "low", "medium", None),
+        ("reflection", "medium", "high", 191),
+        ("reflection", "high", "ultra", None),
+        ("reflection", "low", "medium", None),
+        ("subsurface", "low", "high", 39),
+        ("subsurface", "high", "ultra", None),
+        ("caustics", "high", "ultra", 256),
+        ("caustics", "off", "ultra", None),
+        ("tessellation", "low", "ultra", 14),
+        ("sclera", "low", "ultra", 117),
+    ],
+)
+def test_a_difference_shows_from_its_size_on(
+    effect: str, one: str, other: str, iris_px: float | None
+) -> None:
+    details = Detail().with_levels(**{effect: one}), Detail().with_levels(**{effect: other})
+    found = visible_from(effect, *details)
+    assert (None if found is None else found.iris_px) == iris_px
+    assert visible_from(effect, *reversed(details)) == found
+    if iris_px is not None:
+        assert set(hidden_effects(*details, iris_px - 1)) == {effect}
+        assert hidden_effects(*details, iris_px) == {}
