@@ -1,0 +1,38 @@
+// Provides: one eye's radiance in one pass, all seven effects, linear Rec. 709.
+// README.md says how light travels through the files included here.
+
+#include "light.glsl"
+#include "surface.glsl"
+#include "lids.glsl"
+#include "tessellation.glsl"
+#include "refraction.glsl"
+#include "texture.glsl"
+#include "caustics.glsl"
+#include "subsurface.glsl"
+#include "sclera.glsl"
+#include "reflection.glsl"
+
+in vec3 v_p_eye;
+in vec3 v_n_eye;
+
+out vec4 f_radiance;
+
+vec3 iris_radiance(Surface s) {
+    ViewRay ray = view_through_cornea(s);
+    IrisTexel texel = iris_texel(ray.x_mm);
+    IrisLight light = light_on_iris(ray.x_mm, s);
+    vec3 reflectance = iris_reflectance(texel, ray, light);
+    vec3 sun = light.sun * relief_shading(texel, light);
+    vec3 ambient = light.ambient * texel.cavity;
+    return ray.transmitted * u_iris_gain * reflectance * (sun + ambient) / PI;
+}
+
+void main() {
+    Surface s = surface_at(v_p_eye, v_n_eye);
+    vec3 body = vec3(0.0);
+    // Software GL jumps over loops that no pixel of a block enters, but computes both sides of if.
+    int iris = s.cornea > 0.002 ? 1 : 0, sclera = s.cornea < 0.998 ? 1 : 0;
+    for (int i = 0; i < iris; ++i) body += s.cornea * iris_radiance(s);
+    for (int i = 0; i < sclera; ++i) body += (1.0 - s.cornea) * sclera_radiance(s);
+    f_radiance = vec4(min(body + tear_film_radiance(s), vec3(6e4)), 1.0);
+}

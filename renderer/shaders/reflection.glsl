@@ -1,0 +1,83 @@
+// Provides: the effect "reflection": what the tear film mirrors, and the sun's highlight on it.
+// Off, low: none. Medium: Blinn-Phong and a static 128 cube. High: GGX and a static 1024 cube.
+// Ultra: GGX, a static 2048 cube and the moving people before it.
+// The sclera's own Blinn-Phong highlight belongs to the effect "sclera" and is drawn here.
+
+uniform samplerCube u_static_cube;   // radiance of the surroundings without the sun
+uniform samplerCube u_crowd_cube;    // premultiplied radiance and coverage of the moving people
+
+const float CORNEA_ROUGHNESS = 0.055;        // tear film over the cornea
+const float CORNEA_EXPONENT = 400.0;         // Blinn-Phong, at medium
+const float SCLERA_EXPONENT = 220.0;
+const float SCLERA_BLUR = 2.0;               // mips by which the bumpy sclera's mirror is blurred
+const float MENISCUS_MM = 0.4;               // height of the tears along the lower lid
+
+// The tear line climbs up the lower lid: its normal turns from the globe's towards the sky.
+vec3 tear_normal(Surface s) {
+    if (REFLECTION < HIGH) return s.n_eye;
+    float above = s.p_eye.y - rims_at(s.p_eye.x).y;
+    float bend = 1.0 - smoothstep(0.0, MENISCUS_MM, above);
+    return normalize(s.n_eye + 0.9 * bend * vec3(0.0, 1.0, 0.0));
+}
+
+// Walter et al. 2007, eq. 33 and 34 (GGX, height-correlated shadowing), without Fresnel's factor.
+// alpha grows by the turn of the surface within a pixel, so that the glint never falls between.
+float ggx(float NoH, float NoL, float NoV) {
+    float turn = 0.5 * u_mm_per_px / CORNEA_RADIUS_MM;
+    float a2 = pow(CORNEA_ROUGHNESS, 4.0) + turn * turn;
+    float d = NoH * NoH * (a2 - 1.0) + 1.0;
+    float v = NoL * sqrt(NoV * NoV * (1.0 - a2) + a2) + NoV * sqrt(NoL * NoL * (1.0 - a2) + a2);
+    return a2 / (PI * d * d) * 0.5 / max(v, 1e-4);
+}
+
+// Normalised so that it reflects the same energy at any exponent.
+float blinn_phong(float NoH, float exponent) {
+    return (exponent + 8.0) / (8.0 * PI) * pow(NoH, exponent);
+}
+
+float highlight_on(vec3 n, Surface s, vec3 l, bool is_ggx, float exponent) {
+    vec3 h = normalize(l + s.v_eye);
+    float NoH = clamp(dot(n, h), 0.0, 1.0), NoL = clamp(dot(n, l), 0.0, 1.0);
+    float NoV = clamp(dot(n, s.v_eye), 0.02, 1.0);
+    float lobe = is_ggx ? ggx(NoH, NoL, NoV) : blinn_phong(NoH, exponent);
+    return fresnel(clamp(dot(l, h), 0.0, 1.0)) * lobe * NoL;
+}
+
+vec3 sun_highlight(Surface s, vec3 n_tear) {
+    vec3 l = turned_to_eye(u_sun_direction);
+    float on_cornea = 0.0, on_sclera = 0.0;
+    if (REFLECTION >= MEDIUM)
+        on_cornea = highlight_on(n_tear, s, l, REFLECTION >= HIGH, CORNEA_EXPONENT);
+    if (SCLERA >= HIGH || REFLECTION >= MEDIUM)
+        on_sclera = highlight_on(sclera_normal(s), s, l, false, SCLERA_EXPONENT);
+    return u_sun_irradiance * s.sun * mix(on_sclera, on_cornea, s.cornea);
+}
+
+vec3 surroundings(vec3 d_world, float blur) {
+    float cone = 2.0 * u_mm_per_px / CORNEA_RADIUS_MM;
+    float texel = 0.5 * PI / float(textureSize(u_static_cube, 0).x);
+    float lod = max(log2(cone / texel), 0.0) + blur;
+    vec3 radiance = textureLod(u_static_cube, d_world, lod).rgb;
+    if (REFLECTION >= ULTRA) {
+        vec4 people = textureLod(u_crowd_cube, d_world, lod);
+        radiance = people.rgb + (1.0 - people.a) * radiance;
+    }
+    return radiance;
+}
+
+// The own face is not in the cubes: rays into lids, nose and cheeks meet skin in the shade.
+vec3 mirrored(Surface s, vec3 n) {
+    vec3 d = reflect(-s.v_eye, n);
+    vec3 d_world = turned_to_world(d);
+    float open_share = lid_openness(s.p_eye, d, 0.9) * smoothstep(-0.15, 0.25, d_world.z);
+    vec3 skin = LID_REFLECTANCE * ambient_irradiance(vec3(0.0, 0.0, 1.0)) * (0.5 / PI);
+    vec3 seen = mix(skin, surroundings(d_world, (1.0 - s.cornea) * SCLERA_BLUR), open_share);
+    return fresnel(clamp(dot(n, s.v_eye), 0.0, 1.0)) * seen;
+}
+
+vec3 tear_film_radiance(Surface s) {
+    vec3 radiance = vec3(0.0), n = tear_normal(s);
+    if (REFLECTION >= MEDIUM) radiance += mirrored(s, n);
+    if (REFLECTION >= MEDIUM || SCLERA >= HIGH) radiance += sun_highlight(s, n);
+    return radiance;
+}

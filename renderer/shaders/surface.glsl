@@ -1,0 +1,44 @@
+// Provides: the globe's surface (Baker's cornea joined to the sclera), frames, common numbers.
+// Eye space in millimetres: origin the globe's centre, +z the gaze, +x the viewer's right.
+
+const float PI = 3.14159265358979;
+
+uniform mat4 u_eye_to_world;
+uniform vec3 u_camera_mm;      // world space
+uniform float u_mm_per_px;     // size of a pixel at the eye
+uniform float u_mirror;        // +1 the viewer's left eye, -1 the right: flips maps in x
+
+struct Surface {
+    vec3 p_eye;
+    vec3 n_eye;      // unit, outwards
+    vec3 v_eye;      // unit, towards the camera
+    float cornea;    // 1 clear cornea .. 0 opaque sclera
+    float sun;       // share of the sun that reaches it
+};
+
+vec3 world_from_eye(vec3 p_eye) { return (u_eye_to_world * vec4(p_eye, 1.0)).xyz; }
+vec3 turned_to_world(vec3 d_eye) { return mat3(u_eye_to_world) * d_eye; }
+vec3 turned_to_eye(vec3 d_world) { return transpose(mat3(u_eye_to_world)) * d_world; }
+
+// Height and slope of the front surface; renderer/optics.py, surface_height, says the same.
+void front_profile(float r, out float height, out float slope) {
+    const float R = CORNEA_RADIUS_MM, p = CORNEA_ASPHERICITY;
+    float sag = (R - sqrt(max(R * R - p * r * r, 0.0))) / p;
+    float cornea = APEX_MM - sag;
+    float globe = sqrt(max(GLOBE_RADIUS_MM * GLOBE_RADIUS_MM - r * r, 1e-4));
+    float offset = (r - LIMBUS_RADIUS_MM) / JOIN_REACH_MM;
+    float k = JOIN_HEIGHT_MM * exp(-offset * offset * offset * offset);
+    float k_slope = -4.0 * offset * offset * offset / JOIN_REACH_MM * k;
+    float q = sqrt((cornea - globe) * (cornea - globe) + k * k) + 1e-20;
+    float weight = 0.5 * (1.0 + (cornea - globe) / q);
+    height = 0.5 * (cornea + globe + q);
+    slope = -weight * r / (R - p * sag) - (1.0 - weight) * r / globe + 0.5 * k * k_slope / q;
+}
+
+// How clear the tissue over a point is: the sclera overlaps the cornea by about a millimetre, and
+// further above and below than at the sides.
+float cornea_share(vec3 p_eye) {
+    if (p_eye.z < 0.0) return 0.0;
+    float r = length(vec2(p_eye.x, p_eye.y / LIMBUS_HEIGHT_RATIO));
+    return 1.0 / (1.0 + exp((r - LIMBUS_RADIUS_MM + 0.12) / 0.15));
+}

@@ -1,0 +1,63 @@
+// Provides: the effect "texture": what the iris is like at a point of its plane.
+// Off: one mean colour. Low to ultra: the iris map at the level's size; from high on the map's
+// relief shades too.
+
+uniform sampler2D u_iris_albedo;   // rgb reflectance, a openness of cavities
+uniform sampler2D u_iris_normal;   // of the relief, packed to 0..1
+uniform vec3 u_iris_mean;          // mean reflectance of the iris
+uniform float u_pupil_mm;          // diameter
+uniform vec3 u_iris_gain;          // of the preset: thesis or calibrated
+
+const float MAP_EDGE_MM = 6.0;     // half the side of every map of the iris plane
+const float MAGNIFICATION = 1.12;  // the cornea's
+
+struct IrisTexel {
+    vec3 albedo;
+    vec3 n_eye;      // of the relief, facing +z
+    float cavity;    // 1 open .. 0 deep in a crypt
+    vec2 map_mm;     // the point on the maps, whose pupil is canonical
+};
+
+// The tissue stretches evenly between the pupil's edge and the root (Pamplona et al. 2009).
+vec2 map_point(vec2 x_mm) {
+    float r = length(x_mm), pupil = 0.5 * u_pupil_mm;
+    float outer = (IRIS_MAP_RADIUS_MM - MAP_PUPIL_RADIUS_MM) / (IRIS_MAP_RADIUS_MM - pupil);
+    float mapped = r < pupil ? r * MAP_PUPIL_RADIUS_MM / pupil
+                             : MAP_PUPIL_RADIUS_MM + (r - pupil) * outer;
+    return x_mm * (mapped / max(r, 1e-4)) * vec2(u_mirror, 1.0);
+}
+
+vec2 plane_uv(vec2 x_mm) { return 0.5 + 0.5 * x_mm / MAP_EDGE_MM; }
+
+// Explicit level of detail: bent rays have discontinuous derivatives at the limbus.
+float plane_lod(sampler2D map) {
+    float texel_mm = 2.0 * MAP_EDGE_MM / float(textureSize(map, 0).x);
+    return max(log2(u_mm_per_px / (MAGNIFICATION * texel_mm)), 0.0);
+}
+
+// What lies behind the pupil's edge is dark, what lies beyond the root is the limbus's own shadow.
+float iris_extent(float r) {
+    float pupil = 0.5 * u_pupil_mm, soft = max(u_mm_per_px, 0.06);
+    return smoothstep(pupil - soft, pupil, r)
+         * (1.0 - smoothstep(IRIS_MAP_RADIUS_MM - 0.35, IRIS_MAP_RADIUS_MM + 0.25, r));
+}
+
+IrisTexel iris_texel(vec2 x_mm) {
+    IrisTexel texel;
+    float r = length(x_mm);
+    texel.map_mm = map_point(x_mm * min(1.0, IRIS_MAP_RADIUS_MM / max(r, 1e-4)));
+    texel.albedo = u_iris_mean;
+    texel.cavity = 1.0;
+    texel.n_eye = vec3(0.0, 0.0, 1.0);
+    if (TEXTURE >= LOW) {
+        vec4 map = textureLod(u_iris_albedo, plane_uv(texel.map_mm), plane_lod(u_iris_albedo));
+        texel.albedo = map.rgb;
+        texel.cavity = map.a;
+    }
+    if (TEXTURE >= HIGH) {
+        vec3 n = textureLod(u_iris_normal, plane_uv(texel.map_mm), plane_lod(u_iris_normal)).xyz;
+        texel.n_eye = normalize((2.0 * n - 1.0) * vec3(u_mirror, 1.0, 1.0));
+    }
+    texel.albedo *= iris_extent(r);
+    return texel;
+}
