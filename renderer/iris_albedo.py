@@ -15,10 +15,11 @@ from renderer.iris_layout import (
     closed_noise,
     over_angle,
 )
-from renderer.iris_plane import HALF_SIZE_MM, Plane, blur, smoothstep
+from renderer.iris_plane import HALF_SIZE_MM, Plane, blur
 from renderer.iris_relief import Relief
 from renderer.noise import Field
 from renderer.pigment import IPE_ALBEDO, RUFF, Family, srgb_to_linear
+from renderer.texture_maps import smoothstep
 
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 

@@ -12,12 +12,12 @@ from typing import Final
 import numpy as np
 
 from renderer.iris_layout import IRIS_RADIUS_MM
-from renderer.iris_plane import Plane, blur, smoothstep
+from renderer.iris_plane import Plane, blur
 from renderer.iris_relief import Relief
 from renderer.noise import Field
 from renderer.pigment import Family, family, luminance, srgb_to_linear
 from renderer.subsurface import Tissue
-from renderer.texture_maps import shrink
+from renderer.texture_maps import shrink, smoothstep
 
 # Piecewise-linear marching with a few nodes is right for features of 0.22 mm and more
 # (reference/eye-rendering.md, 2.3): a Gaussian of this width leaves 1 % at half that wavelength.

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from renderer.iris_layout import Crypts, IrisLayout, angle_between, over_angle
-from renderer.iris_plane import HALF_SIZE_MM, Plane, smoothstep
+from renderer.iris_plane import HALF_SIZE_MM, Plane
 from renderer.noise import Field, noise_grid
+from renderer.texture_maps import smoothstep
 
 
 def crypt_mask(plane: Plane, crypts: Crypts, seed: int) -> Field:

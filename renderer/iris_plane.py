@@ -60,13 +60,6 @@ def iris_plane(layout: IrisLayout, size_px: int) -> Plane:
     )
 
 
-def smoothstep(low: float, high: float, x: Field) -> Field:
-    """Return the cubic step from 0 at ``low`` to 1 at ``high`` (which may be the smaller)."""
-    t = np.clip((x - np.float32(low)) / np.float32(high - low), 0.0, 1.0)
-    step: Field = t * t * (np.float32(3.0) - np.float32(2.0) * t)
-    return step
-
-
 def blur(field: Field, sigma_mm: float, size_px: int) -> Field:
     """Blur with a Gaussian; wide ones at a quarter of the resolution, where they lose nothing."""
     sigma_px = sigma_mm * size_px / (2.0 * HALF_SIZE_MM)

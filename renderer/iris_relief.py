@@ -12,9 +12,10 @@ import numpy as np
 
 from renderer.iris_layout import IrisLayout
 from renderer.iris_openings import crypt_mask, furrow_mask
-from renderer.iris_plane import HALF_SIZE_MM, Plane, blur, smoothstep
+from renderer.iris_plane import HALF_SIZE_MM, Plane, blur
 from renderer.iris_strands import iris_tubes
 from renderer.noise import Field, noise_grid, polar_noise, sample_polar
+from renderer.texture_maps import smoothstep
 from renderer.tubes import draw_tubes
 
 RELIEF_MM: Final = 0.50

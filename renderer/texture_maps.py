@@ -14,6 +14,13 @@ Field = npt.NDArray[np.float32]
 _STEPS: Final = 65535.0
 
 
+def smoothstep(low: float, high: float, x: Field) -> Field:
+    """Return the cubic step from 0 at ``low`` to 1 at ``high`` (which may be the smaller)."""
+    t = np.clip((x - np.float32(low)) / np.float32(high - low), 0.0, 1.0)
+    step: Field = t * t * (np.float32(3.0) - np.float32(2.0) * t)
+    return step
+
+
 def check_size(size_px: int, largest_px: int) -> None:
     """Raise ValueError unless ``size_px`` is a power of two from 1 to ``largest_px``."""
     if size_px < 1 or size_px > largest_px or size_px & (size_px - 1):
