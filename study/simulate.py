@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from analysis.observers import Answer, Observer, Stimulus, draw_observer
-from study.data import answers, arms, progress, studies, trials, views
+from study.data import answers, arms, studies, trials, views
+from study.data import progress as steps
 from study.data.database import Database
 from study.data.participants import Participant, enrol
 from study.data.studies import Study
@@ -34,12 +35,12 @@ def simulate(
     *,
     participants: int,
     seed: int,
-    report: Callable[[int], None] = lambda _done: None,
+    progress: Callable[[int], None] = lambda _done: None,
 ) -> Study:
     """Let simulated people take a study from consent to completion code; returns the study.
 
     No clip has to be rendered. The same seed gives the same people and answers in an empty
-    database. ``report`` hears how many are done.
+    database. ``progress`` hears how many are done.
     """
     study = studies.register(db, definition)
     for number in range(participants):
@@ -47,7 +48,7 @@ def simulate(
         # One transaction per person: on the disk as a whole or not at all.
         with db.writing():
             _take_part(db, study, rng)
-        report(number + 1)
+        progress(number + 1)
     return study
 
 
@@ -56,14 +57,14 @@ def _take_part(db: Database, study: Study, rng: np.random.Generator) -> None:
     person = enrol(
         db, study, simulated=True, rng=rng, recruited_by="simulation", device=_DEVICE
     ).participant
-    progress.give_consent(db, person, key="consent")
+    steps.give_consent(db, person, key="consent")
     if definition.about:
-        progress.store_about(db, person, about_answers(definition, observer, rng), key="about")
-    progress.finish_instructions(db, person, key="instructions")
+        steps.store_about(db, person, about_answers(definition, observer, rng), key="about")
+    steps.finish_instructions(db, person, key="instructions")
     leased = arms.assign(db, person, available=all_arms(definition))
     if leased is None:
         raise RuntimeError("a study without arms cannot be simulated")
-    progress.begin(db, leased, key="begin")
+    steps.begin(db, leased, key="begin")
     for trial in trials.all_trials(db, leased):
         seen = stimulus(
             definition, trial.clip, size=leased.size or "", orbit=leased.orbit_direction or ""

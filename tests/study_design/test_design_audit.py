@@ -44,9 +44,6 @@ def test_warnings_name_what_is_worth_a_second_look(raw: dict[str, Any]) -> None:
     raw["contact"] = {"name": "Somebody"}
     raw["practice"] = []
     raw["orbit"]["directions"] = ["leftward"]
-    raw["factors"] = [
-        {"distances": ["far"], "lods": ["low"], "against": ["ultra"], "sides": "given"}
-    ]
     found = audit.warnings(parse_definition(raw))
     starts = [
         "contact: neither email nor details",
