@@ -6,17 +6,19 @@ From files it needs neither web framework nor database nor GL; only a database's
 from __future__ import annotations
 
 import argparse
+import textwrap
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from analysis.reading import Tables
+    from analysis import Tables
 
 HELP = "write figures, tables and a report"
 DESCRIPTION = (
     "Analyse ratings: charts as SVG and PNG, the numbers behind each as CSV, and one report that "
     "stands on its own. Any table with the columns participant, lod and rating will do."
 )
+WIDTH: Final = 96
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,28 +41,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Analyse and name the report."""
-    from analysis.report import write_report
+    """Analyse, say the answer, name the report."""
+    from analysis import analyse, read_source
 
-    tables = _from_database(options.source) if "://" in options.source else None
-    if tables is None:
-        from analysis.reading import read_source
-
-        tables = read_source(options.source)
-    report = write_report(tables, options.out, bench=options.bench)
-    print(report)
+    source = options.source
+    tables = _from_database(source) if "://" in source else read_source(source)
+    summary = analyse(tables, options.out, bench=options.bench)
+    for line in summary.lines():
+        print("\n".join(textwrap.wrap(line, WIDTH, break_on_hyphens=False)))
+    print(summary.report)
     return 0
 
 
 def _from_database(url: str) -> Tables:
-    from analysis.reading import tables_from
+    from analysis import tables_from
     from study.commands.preparing import find_study, open_existing
     from study.data import export
     from study.settings import Settings
 
     db = open_existing(Settings(database_url=url))
     try:
-        found = export.tables(db, find_study(db, None))
+        study = find_study(db, None)
+        found = export.tables(db, study)
     finally:
         db.close()
     frames = {
@@ -68,4 +70,4 @@ def _from_database(url: str) -> Tables:
         "comparisons": found.comparisons,
         "participants": found.participants,
     }
-    return tables_from(frames, source=url, codebook=found.codebook)
+    return tables_from(frames, source=study.key, codebook=found.codebook)
