@@ -1,9 +1,68 @@
 """Statistics and charts from tidy tables: plain tables in, tables and figures out.
 
-Imports nothing of the renderer or the study: it works on anyone's ratings. Importing it loads no
-plotting library.
+Imports nothing of the renderer or the study: it works on anyone's ratings. What is listed here may
+be used by others; it is loaded on first use, so importing the package loads no plotting library.
 """
 
-from analysis.table import COLUMNS, Column, accepted_in, codebook, column_names, columns_of
+from __future__ import annotations
 
-__all__ = ["COLUMNS", "Column", "accepted_in", "codebook", "column_names", "columns_of"]
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from analysis.audit import Audit, ShownClip, audit_design
+    from analysis.charts import CHARTS, Chart, figures
+    from analysis.observers import Answer, Observer, Stimulus, draw_observer
+    from analysis.parsing import TableError
+    from analysis.publish import Summary, analyse
+    from analysis.reading import Tables, read_source, tables_from
+    from analysis.table import (
+        COLUMNS,
+        Column,
+        accepted_in,
+        codebook,
+        column_names,
+        columns_of,
+    )
+
+_HOMES = {
+    "audit": ("Audit", "ShownClip", "audit_design"),
+    "charts": ("CHARTS", "Chart", "figures"),
+    "observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
+    "parsing": ("TableError",),
+    "publish": ("Summary", "analyse"),
+    "reading": ("Tables", "read_source", "tables_from"),
+    "table": ("COLUMNS", "Column", "accepted_in", "codebook", "column_names", "columns_of"),
+}
+
+__all__ = [
+    "CHARTS",
+    "COLUMNS",
+    "Answer",
+    "Audit",
+    "Chart",
+    "Column",
+    "Observer",
+    "ShownClip",
+    "Stimulus",
+    "Summary",
+    "TableError",
+    "Tables",
+    "accepted_in",
+    "analyse",
+    "audit_design",
+    "codebook",
+    "column_names",
+    "columns_of",
+    "draw_observer",
+    "figures",
+    "read_source",
+    "tables_from",
+]
+
+
+def __getattr__(name: str) -> Any:
+    for module, names in _HOMES.items():
+        if name in names:
+            return getattr(importlib.import_module(f"analysis.{module}"), name)
+    raise AttributeError(f'module "analysis" has no attribute "{name}"')

@@ -16,7 +16,7 @@ from analysis.descriptive import differences_from_best, mean_ratings
 from analysis.ordering import distance_order
 from analysis.reading import Tables
 from analysis.shares import pair_notice_shares
-from analysis.wording import counted, interval, listed, number, percent
+from analysis.wording import counted, interval, listed, milliseconds, number, people, percent
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,7 @@ def _finding(
     if measured.empty:
         return Finding(distance, _without_interval(gaps, best))
     passed, failed = _split(measured)
-    parts = [_verdict(best, passed, failed)]
-    if failed:
-        parts.append(_losses(best, failed))
+    parts = [_verdict(best, passed, failed), *([_losses(best, failed)] if passed else [])]
     if passed:
         parts.append(_notice(str(passed[-1].lod), best, noticed))
     unmeasured = gaps.loc[gaps["low"].isna(), "lod"].tolist()
@@ -100,37 +98,35 @@ def _split(gaps: pd.DataFrame) -> tuple[list[_Gap], list[_Gap]]:
 
 def _verdict(best: str, passed: list[_Gap], failed: list[_Gap]) -> str:
     if not passed:
+        lower = [_loss(gap) for gap in failed if gap.low > 0]
+        every = "every lower LoD shown" if len(lower) == len(failed) else "the next LoD down"
         return (
-            f"only {best} will do on these data, since the next LoD down, {failed[0].lod}, was "
-            "rated lower"
+            f"{every} was rated below {best}, {listed(lower)}, so among these only {best} will do"
         )
     last = passed[-1]
-    detail = f"{_gap_text(best, last)}, n = {last.people}"
     risk = (
-        f"a loss of up to {number(last.high)} points is not ruled out"
+        f"but a loss of up to {number(last.high)} points is not ruled out"
         if last.high > 0
-        else f"{last.lod} was even rated higher"
+        else f"and {last.lod} was even rated higher"
     )
-    return f"{last.lod} is the least LoD not shown to be rated below {best} ({detail}): {risk}"
-
-
-def _gap_text(best: str, gap: _Gap) -> str:
     return (
-        f"{best} − {gap.lod} = {number(gap.difference)} points, 95% CI "
-        f"{interval(gap.low, gap.high)}"
+        f"{last.lod} is the least LoD not shown to be rated below {best} ({best} − {last.lod} = "
+        f"{number(last.difference)} points, {_certainty(last)}), {risk}"
     )
 
 
 def _losses(best: str, failed: list[_Gap]) -> str:
-    lower = [gap for gap in failed if gap.low > 0]
-    unsure = [gap for gap in failed if gap.low <= 0]
-    text = "rated lower: " + listed(
-        [f"{g.lod} by {number(g.difference)} ({interval(g.low, g.high)})" for g in lower]
-    )
-    if unsure:
-        names = [f"{g.lod} ({interval(g.low, g.high)})" for g in unsure]
-        text += f"; below them, without a demonstrated loss against {best}: {listed(names)}"
-    return text
+    """Say by how much the LoDs below the last one that passed were rated lower."""
+    lower = [_loss(gap) for gap in failed if gap.low > 0]
+    return f"rated below {best}: {listed(lower)}" if lower else ""
+
+
+def _loss(gap: _Gap) -> str:
+    return f"{gap.lod} by {number(gap.difference)} points ({_certainty(gap)})"
+
+
+def _certainty(gap: _Gap) -> str:
+    return f"95\N{NO-BREAK SPACE}% CI {interval(gap.low, gap.high)}, {people(gap.people)}"
 
 
 def _notice(lod: str, best: str, noticed: pd.DataFrame) -> str:
@@ -140,7 +136,7 @@ def _notice(lod: str, best: str, noticed: pd.DataFrame) -> str:
     row = pair.iloc[0]
     return (
         f"beside {best}, {percent(row['share'])} noticed a difference "
-        f"({percent(row['low'])} to {percent(row['high'])}, n = {row['total']})"
+        f"({percent(row['low'])} to {percent(row['high'])}, {people(row['total'])})"
     )
 
 
@@ -151,12 +147,9 @@ def _price(distance: str, lod: str, best: str, costs: Costs | None) -> str:
     if own is None:
         return f"the cost of {lod} was not measured here"
     if lod == best or full is None:
-        return f"{lod} costs {number(own, digits=1)} ms per frame"
+        return f"{lod} costs {milliseconds(own)} per frame"
     saved = f", {percent(1 - own / full)} less" if full > own else ""
-    return (
-        f"{lod} costs {number(own, digits=1)} ms per frame, {best} {number(full, digits=1)} ms"
-        f"{saved}"
-    )
+    return f"{lod} costs {milliseconds(own)} per frame, {best} {milliseconds(full)}{saved}"
 
 
 def _without_comparison(means: pd.DataFrame) -> str:
@@ -170,8 +163,8 @@ def _means_text(means: pd.DataFrame) -> str:
     columns = means[["lod", "mean", "low", "high", "people"]]
     return listed(
         [
-            f"{lod} {number(mean)} ({interval(low, high)}, n = {people})"
-            for lod, mean, low, high, people in columns.itertuples(index=False, name=None)
+            f"{lod} {number(mean)} ({interval(low, high)}, {people(count)})"
+            for lod, mean, low, high, count in columns.itertuples(index=False, name=None)
         ]
     )
 

@@ -9,13 +9,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Final
 
 import pandas as pd
 
+from analysis.ordering import natural
 from analysis.table import DISTANCES, STANDARD_LODS
-
-_WORDS: Final = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine")
+from analysis.wording import listed
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,8 @@ class ShownClip:
 class Audit:
     """A design's facts. ``cells`` counts the clips that show each LoD at each distance.
 
-    ``linked`` holds, per distance, the groups of LoDs that comparisons link; one group is best.
+    ``linked`` holds, per distance shown, the groups of LoDs that comparisons link: one group is
+    best. ``sides`` counts the clips that show each LoD on the left and on the right.
     """
 
     distances: tuple[str, ...]
@@ -58,70 +58,86 @@ class Audit:
 
     def statements(self) -> list[str]:
         """Say in sentences what this design shows and what it cannot answer."""
-        if not self.clips:
-            return ["No clip has been shown, so nothing can be concluded."]
-        return [*self._about_cells(), *self._about_links(), *self._about_catch_and_sides()]
+        return [*self.facts(), *self.limits()]
 
-    def _about_cells(self) -> list[str]:
+    def facts(self) -> list[str]:
+        """Say in sentences what was shown."""
+        if not self.clips:
+            return []
         total = len(self.distances) * len(self.lods)
         seen = total - len(self.empty_cells)
         text = [f"{seen} of {total} combinations of LoD and distance were shown."]
-        if self.empty_cells:
-            missing = "; ".join(
-                f"{d}: {_listed([lod for at, lod in self.empty_cells if at == d])}"
-                for d in self.distances
-                if any(at == d for at, _ in self.empty_cells)
-            )
-            text.append(
-                f"Not shown: {missing}. Nothing can be said about them, and how the effect of LoD "
-                "changes with distance is known only where the same LoDs were shown."
-            )
+        if self.catch_clips:
+            text.append(f"Clips with the same LoD in both eyes: {self.catch_clips}.")
+        if self.mirrored:
+            pairs = "; ".join(f"clips {a} and {b}" for a, b in self.mirrored)
+            text.append(f"Shown with the eyes exchanged: {pairs}.")
         return text
 
-    def _about_links(self) -> list[str]:
-        text = []
-        for distance, groups in self.linked.items():
-            if len(groups) > 1:
-                names = "; ".join(_listed(group) for group in groups)
-                text.append(
-                    f"At {distance}, comparisons do not link all LoDs ({names}): between these "
-                    "groups only the ratings tell."
-                )
-        if len(self.distances) > 1:
+    def limits(self) -> list[str]:
+        """Say in sentences what this design cannot answer."""
+        if not self.clips:
+            return ["No pair of eyes was shown, so nothing is known about comparisons."]
+        return [*self._missing(), *self._unlinked(), *self._unknown()]
+
+    def _missing(self) -> list[str]:
+        missing = [text for text in map(self._missing_at, self.distances) if text]
+        if not missing:
+            return []
+        return [
+            f"Not shown: {'; '.join(missing)}. Nothing can be said about these, and how the effect "
+            "of LoD changes with distance is known only where the same LoDs were shown."
+        ]
+
+    def _missing_at(self, distance: str) -> str:
+        missing = [lod for at, lod in self.empty_cells if at == distance]
+        if len(missing) == len(self.lods):
+            return f"any LoD at distance={distance}"
+        return f"{listed(missing)} at distance={distance}" if missing else ""
+
+    def _unlinked(self) -> list[str]:
+        text = [
+            f"At distance={distance}, comparisons do not link all LoDs "
+            f"({'; '.join(listed(group) for group in groups)}): between these groups only the "
+            "ratings tell."
+            for distance, groups in self.linked.items()
+            if len(groups) > 1
+        ]
+        if len(self.linked) > 1:
             text.append(
                 "No comparison links two distances; only the ratings do. Comparisons are therefore "
                 "read within a distance."
             )
         return text
 
-    def _about_catch_and_sides(self) -> list[str]:
+    def _unknown(self) -> list[str]:
         text = []
-        if self.catch_clips:
-            text.append(f"{_count(self.catch_clips, 'clip')} showed the same LoD in both eyes.")
-        else:
+        if not self.catch_clips:
             text.append(
                 "No clip showed the same LoD in both eyes, so it is unknown how often people "
                 "notice a difference where there is none; a share of people who noticed one is not "
                 "a sensitivity."
             )
-        if self.mirrored:
-            pairs = "; ".join(f"{a} and {b}" for a, b in self.mirrored)
-            text.append(f"Shown with the eyes exchanged: {pairs}.")
-        else:
+        if not self.mirrored:
             text.append(
                 "No pairing was shown with the eyes exchanged, so a preference for one side cannot "
                 "be told from a preference for a LoD."
             )
         one_sided = [lod for lod, (left, right) in self.sides.items() if not left or not right]
         if one_sided:
-            text.append(f"Seen on one side only: {_listed(one_sided)}.")
+            text.append(f"Seen on one side only: {listed(one_sided)}.")
         return text
 
 
 def audit_design(clips: Iterable[ShownClip]) -> Audit:
-    """Audit a design from its clips, practice left out by the caller."""
+    """Audit a design from its clips, practice left out by the caller.
+
+    Where only the four standard distances are used, those not shown count as missing.
+    """
     shown = list(clips)
     at = {clip.distance for clip in shown}
+    if at <= set(DISTANCES):
+        at = set(DISTANCES) if shown else set()
     named = {lod for clip in shown for lod in (clip.left_lod, clip.right_lod)}
     distances = [d for d in DISTANCES if d in at] + sorted(at - set(DISTANCES))
     lods = [lod for lod in STANDARD_LODS if lod in named] + sorted(named - set(STANDARD_LODS))
@@ -132,7 +148,11 @@ def audit_design(clips: Iterable[ShownClip]) -> Audit:
         distances=tuple(distances),
         lods=tuple(lods),
         cells=dict(cells),
-        linked={d: _linked([c for c in shown if c.distance == d], lods) for d in distances},
+        linked={
+            d: _linked([c for c in shown if c.distance == d], lods)
+            for d in distances
+            if any(c.distance == d for c in shown)
+        },
         catch_clips=sum(clip.is_catch for clip in shown),
         clips=len(shown),
         mirrored=_mirrored(shown),
@@ -162,7 +182,7 @@ def shown_clips(ratings: pd.DataFrame, comparisons: pd.DataFrame) -> list[ShownC
         left, right = lods if row.eye == "left" else lods[::-1]
         clip = ShownClip(str(row.clip), str(row.distance), left, right)
         seen.setdefault((clip.distance, clip.clip), clip)
-    return list(seen.values())
+    return sorted(seen.values(), key=lambda clip: natural(clip.clip))
 
 
 def _linked(clips: Sequence[ShownClip], order: Sequence[str]) -> tuple[tuple[str, ...], ...]:
@@ -184,12 +204,3 @@ def _mirrored(clips: Sequence[ShownClip]) -> tuple[tuple[str, str], ...]:
         and a.distance == b.distance
         and (a.left_lod, a.right_lod) == (b.right_lod, b.left_lod)
     )
-
-
-def _count(number: int, noun: str) -> str:
-    word = _WORDS[number] if number < len(_WORDS) else str(number)
-    return f"{word.capitalize()} {noun}{'' if number == 1 else 's'}"
-
-
-def _listed(names: Sequence[str]) -> str:
-    return ", ".join(names)

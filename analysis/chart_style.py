@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, Final
 
 import matplotlib as mpl
@@ -142,17 +141,12 @@ def beeswarm(values: Sequence[float] | np.ndarray, *, step: float) -> np.ndarray
 
 def figure_bytes(figure: Figure, kind: str) -> bytes:
     """Return a figure as ``png`` or ``svg``; equal figures give equal bytes."""
+    if figure.get_layout_engine() is not None:
+        figure.draw_without_rendering()  # lay out once for all kinds of file
+        figure.set_layout_engine("none")
     buffer = io.BytesIO()
     metadata: dict[str, Any] = {"Date": None} if kind == "svg" else {}
     # The salt of SVG ids is a setting of the whole process; nothing else here depends on it.
     with mpl.rc_context({"svg.hashsalt": "ocularist", "svg.fonttype": "path"}):
         figure.savefig(buffer, format=kind, dpi=PNG_DPI, metadata=metadata)
     return buffer.getvalue()
-
-
-def save_figure(figure: Figure, folder: Path, name: str) -> dict[str, bytes]:
-    """Write a figure as SVG and PNG; return file name -> content."""
-    files = {f"{name}.{kind}": figure_bytes(figure, kind) for kind in ("svg", "png")}
-    for file, content in files.items():
-        (folder / file).write_bytes(content)
-    return files

@@ -52,12 +52,11 @@ def people_overview(tables: Tables) -> pd.DataFrame:
         row = {"participant": person, "ratings": len(given), "missing": len(own) - len(given)}
         row |= {"mean": given.mean() if len(given) else float("nan")}
         row |= {"lowest": int((given == low).sum()), "highest": int((given == high).sum())}
-        seconds = own["response_ms"].astype("Float64").median() / 1000
+        seconds = own["response_ms"].dropna().astype(float).median() / 1000
         row |= {"distinct": given.nunique(), "median_response_s": seconds}
         rows.append(row)
     columns = ["participant", "ratings", "missing", "mean", "lowest", "highest", "distinct"]
-    table = pd.DataFrame(rows, columns=[*columns, "median_response_s"])
-    return table.astype({"median_response_s": "Float64"})
+    return pd.DataFrame(rows, columns=[*columns, "median_response_s"])
 
 
 def quality_statements(tables: Tables) -> list[str]:

@@ -1,7 +1,8 @@
 """Charts of shares: which eye was called more realistic, and who noticed a difference.
 
 Each row is a bar of all answers. Comparisons stand between the names of the two LoDs, so the part
-next to a name is the share that preferred it; the whiskers are Wilson's intervals.
+next to a name is the share that preferred it. Lines beside a bar are Wilson's intervals: above it
+for the first answer, below it for the last.
 """
 
 from __future__ import annotations
@@ -21,7 +22,6 @@ from analysis.chart_style import (
     CHOICE_COLOURS,
     INK,
     NOTICE_COLOURS,
-    QUIET,
     SMALL,
     message_figure,
     new_figure,
@@ -106,7 +106,7 @@ def _draw(
     first = [records(own)[0] for own in rows]
     distances = [str(row["distance"]) for row in first]
     places = grouped_places(distances)
-    figure = new_figure(7.0, 1.45 + 0.33 * places[-1], look.title, is_simulated=tables.is_simulated)
+    figure = new_figure(7.0, 1.45 + 0.36 * places[-1], look.title, is_simulated=tables.is_simulated)
     axes = figure.subplots()
     tidy(axes, grid="x")
     for y, own in zip(places, rows, strict=True):
@@ -119,7 +119,9 @@ def _draw(
     head_groups(axes, places, distances, tables)
     axes.set_xlim(0, 1)
     axes.set_xticks(np.linspace(0, 1, 5), [f"{p} %" for p in (0, 25, 50, 75, 100)])
-    axes.set_xlabel("share of answers, with 95 % intervals (Wilson)", fontsize=SMALL)
+    axes.set_xlabel(
+        "share of answers; lines: 95 % intervals of the shares in their colour", fontsize=SMALL
+    )
     figure.legend(
         handles=[Patch(color=c, label=n) for n, c in zip(look.names, look.colours, strict=True)],
         loc="outside lower center",
@@ -157,11 +159,11 @@ def _draw_bar(axes: Axes, y: float, answers: Mapping[str, Mapping[str, Any]], lo
     start = 0.0
     for answer, colour in zip(look.answers, look.colours, strict=True):
         row = answers[answer]
-        axes.barh(y, row["share"], left=start, height=0.72, color=colour, edgecolor="white")
+        axes.barh(y, row["share"], left=start, height=0.56, color=colour, edgecolor="white")
         if row["share"] > 0.04:
             axes.text(
                 start + row["share"] / 2,
-                y + 0.12,
+                y,
                 f"{row['count']}",
                 ha="center",
                 va="center",
@@ -170,14 +172,15 @@ def _draw_bar(axes: Axes, y: float, answers: Mapping[str, Mapping[str, Any]], lo
             )
         start += row["share"]
     first, last = answers[look.answers[0]], answers[look.answers[-1]]
-    _draw_whisker(axes, y, first["low"], first["high"])
+    _draw_interval(axes, y - 0.37, first["low"], first["high"], colour=look.colours[0])
     if look.is_two_sided:
-        _draw_whisker(axes, y, 1 - last["high"], 1 - last["low"])
+        _draw_interval(axes, y + 0.37, 1 - last["high"], 1 - last["low"], colour=look.colours[-1])
 
 
-def _draw_whisker(axes: Axes, y: float, low: float, high: float) -> None:
-    """Draw an interval above the middle of the bar, where it hides no number."""
-    axes.plot([low, high], [y - 0.23, y - 0.23], color="white", linewidth=2.6, alpha=0.7)
-    axes.plot([low, high], [y - 0.23, y - 0.23], color=QUIET, linewidth=1.2, zorder=3)
+def _draw_interval(axes: Axes, y: float, low: float, high: float, *, colour: str) -> None:
+    """Draw an interval beside the bar, in the colour of the share it belongs to."""
+    axes.plot([low, high], [y, y], color=colour, linewidth=1.3, zorder=3, clip_on=False)
     for end in (low, high):
-        axes.plot([end, end], [y - 0.3, y - 0.16], color=QUIET, linewidth=1.2, zorder=3)
+        axes.plot(
+            [end, end], [y - 0.08, y + 0.08], color=colour, linewidth=1.3, zorder=3, clip_on=False
+        )

@@ -22,7 +22,12 @@ def interval(low: float, high: float, *, digits: int = 2) -> str:
 
 def percent(share: float) -> str:
     """Write a share as a whole percentage."""
-    return f"{share:.0%}" if math.isfinite(share) else "–"
+    return f"{100 * share:.0f}\N{NO-BREAK SPACE}%" if math.isfinite(share) else "–"
+
+
+def milliseconds(value: float) -> str:
+    """Write a duration in milliseconds, with decimals only where they matter."""
+    return f"{value:.{0 if value >= 100 else 1}f}\N{NO-BREAK SPACE}ms"
 
 
 def listed(names: Sequence[str]) -> str:
@@ -35,3 +40,8 @@ def listed(names: Sequence[str]) -> str:
 def counted(count: int, one: str, many: str) -> str:
     """Write a count with its noun."""
     return f"{count} {one if count == 1 else many}"
+
+
+def people(count: int) -> str:
+    """Write a number of people (or answers) as in "n = 10", kept on one line."""
+    return f"n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{count}"

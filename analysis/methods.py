@@ -1,0 +1,68 @@
+"""The methods paragraph: what was computed, by which formula, with which versions."""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from importlib.metadata import PackageNotFoundError, version
+
+import pandas as pd
+
+from analysis.cost import Costs
+from analysis.descriptive import answered
+from analysis.reading import Tables
+
+_PACKAGES = ("numpy", "scipy", "pandas", "matplotlib")
+
+
+def methods(tables: Tables, costs: Costs | None = None) -> list[str]:
+    """Return the paragraphs of the methods section."""
+    low, high = tables.scale
+    paragraphs = [
+        f"Participants rated the realism of the left and the right eye of each clip from {low} "
+        f"(completely unrealistic) to {high} (almost or completely photorealistic), said which eye "
+        "was more realistic and whether they noticed anything missing or different. Left and right "
+        "are the viewer's. Missing answers were left out, never replaced; practice trials were "
+        "not analysed; nobody was excluded.",
+        "Means are over people: repeated ratings of the same thing by one person were averaged "
+        "first. Intervals of means and of differences within people are Student's t, "
+        "m ± t(n−1; .975) s / √n; they are not given for fewer than two people or for values that "
+        "are all alike. Differences compare, within people, the highest LoD shown at a distance "
+        "with each other LoD there. Shares carry Wilson's score interval; where one person saw a "
+        "pair in several clips each answer counts.",
+        "Perceived and actual LoD were related by Kendall's τ-b within each person and distance, "
+        "averaged as Fisher's z with weights equal to the person's untied pairs, with a t interval "
+        "over people; a perfect τ of m untied pairs counts as m / (m + 1). Beside it stand Somers' "
+        "d of rating given LoD, in which equal ratings count as no preference and everyone "
+        "counts, and the repeated-measures correlation (Bland and Altman 1995; one line per person "
+        "and distance, r = sign(b) √(SSx / (SSx + SSe)), N − n − 1 degrees of freedom, interval by "
+        "Fisher's z). Ratings at different distances were never ordered against each other.",
+    ]
+    if costs is not None:
+        paragraphs.append(
+            f"Costs are median times per finished frame for {costs.condition}, from bench.json."
+        )
+    paragraphs.append(
+        f"{_versions()} Nothing here is random, so no seed is needed. {_data(tables)}"
+    )
+    return paragraphs
+
+
+def _versions() -> str:
+    try:
+        own = version("ocularist")
+    except PackageNotFoundError:  # run from a source tree that was never installed
+        own = "from source"
+    others = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
+    return f"Computed by Ocularist {own} with Python {platform.python_version()}, {others}."
+
+
+def _data(tables: Tables) -> str:
+    rows = tables.ratings.to_csv(index=False) + tables.comparisons.to_csv(index=False)
+    digest = hashlib.sha256(rows.encode()).hexdigest()[:16]
+    rated = answered(tables.ratings)
+    text = (
+        f"Data: {len(rated)} ratings by {rated['participant'].nunique()} people, SHA-256 {digest}"
+    )
+    latest = tables.ratings["started_at"].max()
+    return f"{text}, until {latest:%Y-%m-%d %H:%M} UTC." if pd.notna(latest) else f"{text}."

@@ -1,0 +1,157 @@
+"""From tables to files: charts, CSV tables and one self-contained report.
+
+The edge of the package: it writes into one folder and returns what it found.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from analysis.answer import Finding, findings
+from analysis.audit import Audit, audit_design, shown_clips
+from analysis.chart_style import SIMULATED, figure_bytes
+from analysis.charts import CHARTS
+from analysis.correlation import person_concordance
+from analysis.cost import Costs, read_bench
+from analysis.descriptive import answered, differences_from_best, mean_ratings
+from analysis.limits import limits
+from analysis.methods import methods
+from analysis.quality import missing_answers, people_overview, quality_statements
+from analysis.reading import Tables
+from analysis.report_tables import design_table, quality_tables, report_tables
+
+REPORT = "report.html"
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What an analysis found and wrote; ``findings`` are the answer, ``limits`` its limits."""
+
+    findings: tuple[Finding, ...]
+    limits: tuple[str, ...]
+    design: tuple[str, ...]
+    quality: tuple[str, ...]
+    is_simulated: bool
+    people: int
+    ratings: int
+    report: Path
+    files: tuple[Path, ...]
+
+    def lines(self) -> list[str]:
+        """Return the answer as lines of plain text for a terminal."""
+        lines = [SIMULATED] if self.is_simulated else []
+        lines += [f"{finding.distance}: {finding.sentence}" for finding in self.findings]
+        return lines or list(self.limits[:1])
+
+
+def analyse(tables: Tables, out: str | Path, *, bench: str | Path | None = None) -> Summary:
+    """Write every chart, table and the report into the folder ``out`` and return the findings.
+
+    ``bench`` is the path of ``bench.json``, which adds what each LoD costs. Raises TableError for
+    its faults, before anything is written.
+    """
+    costs = read_bench(bench) if bench is not None else None
+    folder = Path(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    audit = audit_design(shown_clips(tables.ratings, tables.comparisons))
+    rated = answered(tables.ratings)
+    found = tuple(findings(tables, costs))
+    files: dict[str, bytes] = {}
+    for chart in CHARTS:
+        figure = chart.draw(tables)
+        files |= {f"{chart.name}.{kind}": figure_bytes(figure, kind) for kind in ("svg", "png")}
+        files[f"{chart.name}.csv"] = _csv(chart.table(tables), tables)
+    for name, table in _more_tables(tables, audit, costs, found).items():
+        files[f"{name}.csv"] = _csv(table, tables)
+    summary = Summary(
+        findings=found,
+        limits=tuple(limits(tables, audit)),
+        design=tuple(audit.facts()),
+        quality=tuple(quality_statements(tables)),
+        is_simulated=tables.is_simulated,
+        people=rated["participant"].nunique(),
+        ratings=len(rated),
+        report=folder / REPORT,
+        files=tuple(folder / name for name in [*sorted(files), REPORT]),
+    )
+    files[REPORT] = _report(tables, summary, files, audit=audit, costs=costs).encode()
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+    return summary
+
+
+def _more_tables(
+    tables: Tables, audit: Audit, costs: Costs | None, found: tuple[Finding, ...]
+) -> dict[str, pd.DataFrame]:
+    """Return the tables that no chart stands for, by file name."""
+    means = mean_ratings(tables.ratings, ["distance", "lod"])
+    if costs is not None:
+        means["ms_per_frame"] = [
+            costs.ms(d, lod) for d, lod in zip(means["distance"], means["lod"], strict=True)
+        ]
+    cells = [
+        {"distance": d, "lod": lod, "clips": audit.cells.get((d, lod), 0)}
+        for d in audit.distances
+        for lod in audit.lods
+    ]
+    remarks = tables.comparisons[
+        ["participant", "distance", "clip", "left_lod", "right_lod", "what_differed", "comments"]
+    ].dropna(subset=["what_differed", "comments"], how="all")
+    answers = [{"distance": f.distance, "lod": f.lod, "sentence": f.sentence} for f in found]
+    return {
+        "answer": pd.DataFrame(answers, columns=["distance", "lod", "sentence"]),
+        "mean-realism": means,
+        "differences-from-best": differences_from_best(tables.ratings),
+        "correlation-per-person": person_concordance(tables.ratings),
+        "design": pd.DataFrame(cells, columns=["distance", "lod", "clips"]),
+        "missing-answers": missing_answers(tables),
+        "people": people_overview(tables),
+        "remarks": remarks,
+    }
+
+
+def _csv(table: pd.DataFrame, tables: Tables) -> bytes:
+    labelled = table.assign(simulated="true" if tables.is_simulated else "false")
+    return labelled.to_csv(index=False, float_format="%.6g", lineterminator="\n").encode()
+
+
+def _report(
+    tables: Tables,
+    summary: Summary,
+    files: Mapping[str, bytes],
+    *,
+    audit: Audit,
+    costs: Costs | None,
+) -> str:
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    studies = tables.ratings[["study", "study_version"]].dropna(how="all").drop_duplicates()
+    return environment.get_template(REPORT).render(
+        summary=summary,
+        study=", ".join(" ".join(row.dropna()) for _, row in studies.iterrows()),
+        source=Path(tables.source).name,
+        charts=[
+            {
+                "caption": chart.caption,
+                "image": base64.b64encode(files[f"{chart.name}.svg"]).decode(),
+                "name": chart.name,
+            }
+            for chart in CHARTS
+        ],
+        tables=report_tables(tables, costs),
+        design_table=design_table(audit),
+        quality_tables=quality_tables(tables),
+        methods=methods(tables, costs),
+        label=SIMULATED,
+    )
