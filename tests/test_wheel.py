@@ -77,11 +77,21 @@ def test_an_installed_wheel_finds_its_pages_studies_shaders_and_tables(
     assert found["tables"] == "True"
 
 
-def test_a_wheel_holds_every_page_and_script(installed: Path) -> None:
-    for name in ("templates", "static"):
-        here = {path.relative_to(ROOT / name) for path in (ROOT / name).rglob("*.*")}
-        there = installed / "study" / name
-        assert {path.relative_to(there) for path in there.rglob("*.*")} == here
+def files_in(folder: Path) -> set[Path]:
+    return {
+        path.relative_to(folder)
+        for path in folder.rglob("*")
+        if path.is_file() and "__pycache__" not in path.parts
+    }
+
+
+def test_a_wheel_holds_every_file_of_the_packages_and_pages(installed: Path) -> None:
+    pages = {name: files_in(ROOT / name) for name in ("templates", "static")}
+    for package in ("analysis", "renderer", "study"):
+        here = files_in(ROOT / package)
+        if package == "study":
+            here |= {Path(name) / path for name, paths in pages.items() for path in paths}
+        assert files_in(installed / package) == here
 
 
 def test_a_wheel_brings_the_command(installed: Path) -> None:
