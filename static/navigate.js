@@ -10,7 +10,8 @@ export async function fetchPatiently(url, options, onWaiting = () => {}) {
   for (let attempt = 0; ; attempt += 1) {
     try {
       const answer = await fetch(url, options);
-      if (answer.status < 500) return answer;
+      // After a redirect the post itself was taken: whatever page follows is to be shown.
+      if (answer.status < 500 || answer.redirected) return answer;
     } catch {
       // No connection: wait, then try again.
     }
@@ -24,6 +25,15 @@ function pause(delay_ms) {
     const timer = setTimeout(resolve, delay_ms);
     addEventListener("online", () => (clearTimeout(timer), resolve()), { once: true });
   });
+}
+
+/** Post a form until the server has it, then show the page that follows. */
+export async function submitPatiently(form, start, { extra = [], onWaiting, onLeave } = {}) {
+  const body = new URLSearchParams(new FormData(form));
+  for (const [name, value] of extra) body.set(name, value);
+  const answer = await fetchPatiently(form.action, { method: "POST", body }, onWaiting);
+  onLeave?.();
+  await showPage(answer, start);
 }
 
 /** Put a fetched page in the place of the present one and start its script. */

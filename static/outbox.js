@@ -5,6 +5,9 @@
 // It knows nothing of pages or questions.
 
 const RETRY_MS = [500, 1000, 2000, 4000, 8000];
+// Answers after which trying again is pointless: malformed, out of step, or the person withdrew. All
+// others may pass: no connection, a server that starts, a cookie that a personal link brings back.
+const NEVER = new Set([400, 409, 410, 422]);
 
 /** A random name of 32 hexadecimal digits; randomUUID is absent on plain http under a host name. */
 export function newKey() {
@@ -101,10 +104,10 @@ export class Outbox {
         body: JSON.stringify(body),
         keepalive: true,
       });
-      if (answer.ok) return true;
-      const retry = answer.status >= 500 || answer.status === 408 || answer.status === 429;
-      if (!retry) this.options.onRefused(entry, answer);
-      return !retry;
+      if (answer.ok && !answer.redirected) return true;
+      if (!NEVER.has(answer.status)) return false;
+      this.options.onRefused(entry, answer);
+      return true;
     } catch {
       return false;
     } finally {

@@ -2,18 +2,18 @@
 
 import { Outbox } from "./outbox.js";
 import { ClipStore } from "./preload.js";
+import { startAbout } from "./about.js";
 import { startNext } from "./next.js";
 import { startPreparing } from "./preparing.js";
 import { startTrial } from "./trial.js";
 
-const PAGES = { preparing: startPreparing, trial: startTrial, next: startNext };
+const PAGES = { about: startAbout, preparing: startPreparing, trial: startTrial, next: startNext };
 const clips = new ClipStore();
 const outboxes = new Map(); // session -> Outbox
 let close = () => {};
 
 start();
 addEventListener("pageshow", (event) => event.persisted && location.reload());
-addEventListener("beforeunload", (event) => currentOutbox()?.entries().length && event.preventDefault());
 
 function start() {
   close();

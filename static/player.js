@@ -144,7 +144,6 @@ export class Player {
   end() {
     if (!this.current) return;
     const play = this.finish(true);
-    this.isWatched = true;
     this.state = "watched";
     this.options.onPlay(play);
   }

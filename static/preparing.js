@@ -1,6 +1,6 @@
 // Waiting for the clips: first for them to be rendered, then for them to reach this browser.
 
-import { fetchPatiently, showPage } from "./navigate.js";
+import { fetchPatiently, submitPatiently } from "./navigate.js";
 import { enterFullscreen, screenFacts } from "./screen.js";
 
 const POLL_MS = 2000;
@@ -42,7 +42,7 @@ export function startPreparing(main, { clips, start }) {
       const answer = await fetchPatiently(`${main.dataset.state_url}?${query()}`, {}, () =>
         show("offline"),
       );
-      if (!answer.ok || !isOpen) {
+      if (!answer.ok || answer.redirected || !isOpen) {
         if (isOpen) location.reload(); // the session ended or moved on: the server knows where to
         return;
       }
@@ -84,8 +84,7 @@ export function startPreparing(main, { clips, start }) {
     if (form.dataset.sending) return;
     form.dataset.sending = "yes";
     await enterFullscreen();
-    const body = new URLSearchParams(new FormData(form));
-    for (const [name, value] of query()) body.set(name, value);
-    await showPage(await fetchPatiently(form.action, { method: "POST", body }), start);
+    const extra = [...query(), ["pixel_ratio", devicePixelRatio]];
+    await submitPatiently(form, start, { extra, onWaiting: () => show("offline") });
   }
 }

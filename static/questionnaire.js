@@ -13,6 +13,7 @@ export class Questionnaire {
     this.typing = new Map();
     form.addEventListener("change", (event) => this.changed(event.target));
     form.addEventListener("input", (event) => this.typed(event.target));
+    this.applyRules();
     for (const button of form.querySelectorAll("[data-clear]")) {
       button.addEventListener("click", () => this.clear(button.dataset.clear));
     }
@@ -21,11 +22,13 @@ export class Questionnaire {
   /** Open the questions; they are locked until the clip was watched to its end. */
   unlock() {
     this.form.querySelector("fieldset.all").disabled = false;
-    this.form.querySelector("[data-locked-note]").textContent = "";
+    this.form.closest("section").querySelector("[data-locked-note]").textContent = "";
+    this.applyRules();
   }
 
   changed(field) {
     if (!field.name || field.type === "hidden") return;
+    this.applyRules();
     clearTimeout(this.typing.get(field.name));
     this.typing.delete(field.name);
     this.save(field.name, field.value);
@@ -41,11 +44,21 @@ export class Questionnaire {
     );
   }
 
+  /** Show a question only after the answers that call for it; what it holds stays. */
+  applyRules() {
+    const given = new FormData(this.form);
+    for (const part of this.form.querySelectorAll("[data-shown-by]")) {
+      const { shownBy, shownFor } = part.dataset;
+      part.hidden = !shownFor.split("|").includes(given.get(shownBy) ?? "");
+    }
+  }
+
   clear(name) {
     for (const field of this.form.elements) {
       if (field.name === name) field.checked = false;
     }
     this.form.querySelector(`input[name="${name}"]`)?.focus();
+    this.applyRules();
     this.save(name, "");
   }
 
@@ -58,7 +71,10 @@ export class Questionnaire {
   open() {
     const given = new FormData(this.form);
     const names = new Set(
-      Array.from(this.form.querySelectorAll("[data-expected]"), (field) => field.dataset.expected),
+      Array.from(
+        this.form.querySelectorAll("[data-expected]:not([hidden])"),
+        (field) => field.dataset.expected,
+      ),
     );
     return [...names].filter((name) => !given.get(name));
   }

@@ -1,6 +1,6 @@
 // The page of one trial: a clip, then its questions.
 
-import { fetchPatiently, showPage } from "./navigate.js";
+import { submitPatiently } from "./navigate.js";
 import { Player } from "./player.js";
 import { Questionnaire } from "./questionnaire.js";
 
@@ -8,11 +8,13 @@ import { Questionnaire } from "./questionnaire.js";
 export function startTrial(main, { outbox, clips, start }) {
   const stage = main.querySelector(".stage");
   const form = main.querySelector(".questions form");
-  const { trial, clip: url } = main.dataset;
+  const { clip: url } = main.dataset;
   const number = (name) => Number(main.dataset[name]);
+  const position = number("position");
   const clip = { url, bytes: number("bytes") };
-  const record = (kind, values, about) => outbox.add({ kind, trial, ...values }, about);
-  const clock = firstFrameClock(trial);
+  const record = (kind, values, about) => outbox.add({ kind, position, ...values }, about);
+  const clock = firstFrameClock(`${document.body.dataset.session}.${position}`);
+  let viewsLeft = number("views_left");
 
   const player = new Player(stage, {
     width: number("width"),
@@ -23,9 +25,9 @@ export function startTrial(main, { outbox, clips, start }) {
     onBroken: broken,
     onTooSmall: tooSmall,
   });
-  player.isWatched = main.dataset.watched === "yes";
+  player.isWatched = viewsLeft === 0;
   const questions = new Questionnaire(form, {
-    save: (question, value) => record("answer", { question, value }, `${trial}/${question}`),
+    save: (question, value) => record("answer", { question, value }, `${position}/${question}`),
   });
   if (player.isWatched) questions.unlock();
   stage.querySelector("[data-reload]").addEventListener("click", load);
@@ -40,8 +42,17 @@ export function startTrial(main, { outbox, clips, start }) {
     clips.onProgress = () => (meter.value = clips.bytesOf([clip]) / clip.bytes);
     try {
       await player.open(await clips.loadFirst(clip));
+      loadTheRest();
     } catch (error) {
       broken(error?.message?.split(" ")[0] || "DECODE");
+    }
+  }
+
+  /** After a reload nothing is in memory: fetch what comes next while this clip is looked at. */
+  function loadTheRest() {
+    for (const part of main.dataset.next.split(",").filter(Boolean)) {
+      const [next, bytes] = part.split(" ");
+      clips.load({ url: next, bytes: Number(bytes) }).catch(() => {}); // its own page tells
     }
   }
 
@@ -49,7 +60,7 @@ export function startTrial(main, { outbox, clips, start }) {
     clips.forget(url);
     stage.querySelector("[data-code]").textContent = `${main.dataset.code}-${code}`;
     player.state = "broken";
-    record("problem", { code: `CLIP-${code}` }, `${trial}/problem`);
+    record("problem", { code: `CLIP-${code}` }, `${position}/problem`);
   }
 
   function tooSmall() {
@@ -59,6 +70,10 @@ export function startTrial(main, { outbox, clips, start }) {
   function played(play) {
     record("play", { play });
     if (!play.is_complete) return;
+    viewsLeft = Math.max(0, viewsLeft - 1);
+    player.isWatched = viewsLeft === 0;
+    player.state = player.isWatched ? "watched" : "ready";
+    if (!player.isWatched) return;
     questions.unlock();
     stage.querySelector("[data-to-questions]").focus({ preventScroll: true });
   }
@@ -84,17 +99,14 @@ export function startTrial(main, { outbox, clips, start }) {
       return;
     }
     form.dataset.sending = "yes";
-    const button = form.querySelector("[type=submit]");
-    button.setAttribute("aria-disabled", "true");
+    form.querySelector("[type=submit]").setAttribute("aria-disabled", "true");
+    form.elements.namedItem("response_ms").value = clock.read();
     await outbox.settled();
-    const body = new URLSearchParams(new FormData(form));
-    body.set("response_ms", clock.read());
-    const answer = await fetchPatiently(form.action, { method: "POST", body }, () =>
-      button.setAttribute("data-waiting", "yes"),
-    );
     clock.clear();
-    clips.forget(url);
-    await showPage(answer, start);
+    await submitPatiently(form, start, {
+      onWaiting: () => outbox.options.onChange({ waiting: 1, failed: true }),
+      onLeave: () => clips.forget(url),
+    });
   }
 
   return () => player.close();

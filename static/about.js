@@ -1,0 +1,23 @@
+// The page about the participant: what is typed is kept at once, and sent as a whole at the end.
+
+import { submitPatiently } from "./navigate.js";
+import { Questionnaire } from "./questionnaire.js";
+
+/** Start the page; returns the function that ends it. */
+export function startAbout(main, { outbox, start }) {
+  const form = main.querySelector("form");
+  const questions = new Questionnaire(form, {
+    save: (question, value) => outbox.add({ kind: "answer", question, value }, `about/${question}`),
+  });
+  form.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    if (form.dataset.sending) return;
+    form.dataset.sending = "yes";
+    questions.flush();
+    await outbox.settled();
+    await submitPatiently(form, start, {
+      onWaiting: () => outbox.options.onChange({ waiting: 1, failed: true }),
+    });
+  });
+  return () => {};
+}

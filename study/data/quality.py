@@ -1,0 +1,114 @@
+"""How good the data are so far: what was skipped, how clips were played, what stopped people."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from study.data.collection import Collected, CollectedTrial, collect
+from study.data.database import Database
+from study.data.studies import Study
+from study.data.trials import PLAYED
+from study.data.views import is_certified
+from study.design.definition import StudyDefinition
+from study.design.questions import TextQuestion, is_shown
+
+PROBLEM = "problem"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Something that stopped a participant, by the code that they saw."""
+
+    public_id: str
+    position: int
+    code: str
+    created_at: datetime
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Complete trials without practice. Text questions may stay empty and do not count as missing.
+
+    ``certified`` of the ``counted`` trials had a play with every frame shown; of the others nobody
+    could count the frames. ``median_views`` is None while there is no trial.
+    """
+
+    trials: int
+    asked: int
+    missing: int
+    counted: int
+    certified: int
+    with_drops: int
+    interrupted_plays: int
+    median_views: float | None
+    problems: Sequence[Problem]
+
+
+def quality(db: Database, study: Study, *, simulated: bool = False) -> Quality:
+    """Return how good the data of the real or of the simulated participants are."""
+    people = [one for one in collect(db, study) if one.row.simulated == simulated]
+    done = [
+        trial
+        for person in people
+        for trial in person.trials
+        if trial.trial.is_complete and not trial.trial.is_practice
+    ]
+    verdicts = [_certified(trial) for trial in done]
+    asked, missing = _asked_and_missing(study.definition, done)
+    return Quality(
+        trials=len(done),
+        asked=asked,
+        missing=missing,
+        counted=sum(verdict is not None for verdict in verdicts),
+        certified=sum(verdict is True for verdict in verdicts),
+        with_drops=sum(any(p.get("dropped_frames") for p in _plays(trial)) for trial in done),
+        interrupted_plays=sum(
+            not play.get("is_complete") for trial in done for play in _plays(trial)
+        ),
+        median_views=statistics.median(t.trial.views for t in done) if done else None,
+        problems=_problems(people),
+    )
+
+
+def _plays(trial: CollectedTrial) -> list[dict[str, object]]:
+    return [event.payload for event in trial.events if event.kind == PLAYED]
+
+
+def _certified(trial: CollectedTrial) -> bool | None:
+    """Return True if one play showed every frame, None if nobody counted."""
+    verdicts = [verdict for p in _plays(trial) if (verdict := is_certified(p)) is not None]
+    return any(verdicts) if verdicts else None
+
+
+def _asked_and_missing(
+    definition: StudyDefinition, done: Sequence[CollectedTrial]
+) -> tuple[int, int]:
+    asked = missing = 0
+    for trial in done:
+        for question in definition.questions:
+            answers = trial.trial.answers
+            if isinstance(question, TextQuestion) or not is_shown(question, answers):
+                continue
+            asked += 1
+            missing += answers.get(question.id) is None
+    return asked, missing
+
+
+def _problems(people: Sequence[Collected]) -> list[Problem]:
+    """Return what stopped people, newest first."""
+    found = [
+        Problem(
+            public_id=person.row.public_id,
+            position=trial.trial.position,
+            code=str(event.payload.get("code", "")),
+            created_at=event.created_at,
+        )
+        for person in people
+        for trial in person.trials
+        for event in trial.events
+        if event.kind == PROBLEM
+    ]
+    return sorted(found, key=lambda problem: problem.created_at, reverse=True)

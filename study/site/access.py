@@ -1,0 +1,182 @@
+"""Who is asking: a participant by a secret cookie, a researcher by a signed one.
+
+Posts of either must carry the token of their cookie; without it a foreign page could act for them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Final
+
+from fastapi import Depends, Request
+from fastapi.responses import RedirectResponse, Response
+
+from study.data import participants, progress, researchers, studies
+from study.data.participants import Participant
+from study.data.progress import Step
+from study.data.studies import Study
+from study.site.forms import first, read_form
+from study.site.place import Here
+from study.site.signatures import csrf_token, is_csrf_token, read_researcher
+
+PARTICIPANT_COOKIE: Final = "ocularist_participant"
+RESEARCHER_COOKIE: Final = "ocularist_researcher"
+REMEMBER_S: Final = 60 * 24 * 3600
+
+
+class Elsewhere(Exception):  # noqa: N818 - no error: the answer is to go to another page
+    """The asker belongs on another page."""
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+        super().__init__(url)
+
+
+class ForgedError(Exception):
+    """A form came without the token of its cookie."""
+
+
+@dataclass(frozen=True)
+class Visitor:
+    """A participant as a page sees them."""
+
+    participant: Participant
+    token: str
+    csrf: str
+    study: Study
+    resume_url: str
+
+    @property
+    def name(self) -> str:
+        """The pseudonym: names this browser's outbox."""
+        return self.participant.public_id
+
+    @property
+    def is_simulated(self) -> bool:
+        """True for a simulated participant."""
+        return self.participant.simulated
+
+    @property
+    def is_over(self) -> bool:
+        """True once completed or withdrawn."""
+        return bool(self.participant.completed_at or self.participant.withdrawn_at)
+
+
+def visitor_or_none(request: Request, here: Here) -> Visitor | None:
+    """Return the participant whose cookie the request carries, or None."""
+    token = request.cookies.get(PARTICIPANT_COOKIE, "")
+    participant = participants.by_token(here.db, token) if token else None
+    if participant is None:
+        return None
+    return Visitor(
+        participant=participant,
+        token=token,
+        csrf=csrf_token(here.secret, token),
+        study=studies.by_id(here.db, participant.study_id),
+        resume_url=str(request.url_for("resume", token=token)),
+    )
+
+
+MaybeVisitor = Annotated[Visitor | None, Depends(visitor_or_none)]
+
+
+def a_visitor(visitor: MaybeVisitor) -> Visitor:
+    """Return the participant; others are led to the first page."""
+    if visitor is None:
+        raise Elsewhere("/")
+    return visitor
+
+
+AVisitor = Annotated[Visitor, Depends(a_visitor)]
+
+
+async def visitors_form(request: Request, here: Here, visitor: AVisitor) -> dict[str, list[str]]:
+    """Return a participant's posted form if it is truly theirs."""
+    fields = await read_form(request)
+    check_csrf(here.secret, visitor.token, first(fields, "csrf"))
+    return fields
+
+
+VisitorsForm = Annotated[dict[str, list[str]], Depends(visitors_form)]
+
+
+def check_csrf(secret: str, credential: str, given: str) -> None:
+    """Raise ForgedError unless ``given`` is the token of this cookie."""
+    if not is_csrf_token(secret, credential, given):
+        raise ForgedError
+
+
+def step_url(step: Step) -> str:
+    """Return the page of a step."""
+    if step.trial is not None:
+        return f"/trial/{step.trial.position}"
+    return {"about": "/about-you", "withdrawn": "/withdrawn"}.get(step.name, f"/{step.name}")
+
+
+def step_of(here: Here, visitor: Visitor, *expected: str) -> Step:
+    """Return where a participant is; leads them there if it is none of the ``expected`` steps."""
+    step = progress.current_step(here.db, visitor.participant)
+    if expected and step.name not in expected:
+        raise Elsewhere(step_url(step))
+    return step
+
+
+def to_current(here: Here, visitor: Visitor) -> RedirectResponse:
+    """Lead a participant to where they are."""
+    return redirect(step_url(step_of(here, visitor)))
+
+
+def redirect(url: str) -> RedirectResponse:
+    """Answer with "see there", which a reload does not post again."""
+    return RedirectResponse(url, status_code=303)
+
+
+def remember(request: Request, response: Response, name: str, value: str, max_age_s: int) -> None:
+    """Set a cookie that scripts cannot read and other sites' posts do not carry."""
+    response.set_cookie(
+        name,
+        value,
+        max_age=max_age_s,
+        httponly=True,
+        samesite="lax",
+        secure=request.url.scheme == "https",
+    )
+
+
+@dataclass(frozen=True)
+class SignedIn:
+    """A researcher as a page sees them."""
+
+    researcher: researchers.Researcher
+    csrf: str
+    cookie: str
+
+    @property
+    def name(self) -> str:
+        """The name that they sign in with."""
+        return self.researcher.name
+
+
+def signed_in(request: Request, here: Here) -> SignedIn:
+    """Return the researcher whose cookie the request carries; others are led to the door."""
+    cookie = request.cookies.get(RESEARCHER_COOKIE, "")
+    found = read_researcher(here.secret, cookie)
+    researcher = None if found is None else researchers.by_id(here.db, found)
+    if researcher is None:
+        raise Elsewhere("/researcher/sign-in")
+    return SignedIn(researcher, csrf_token(here.secret, cookie), cookie)
+
+
+ResearcherHere = Annotated[SignedIn, Depends(signed_in)]
+
+
+async def researchers_form(
+    request: Request, here: Here, researcher: ResearcherHere
+) -> dict[str, list[str]]:
+    """Return a researcher's posted form if it is truly theirs."""
+    fields = await read_form(request)
+    check_csrf(here.secret, researcher.cookie, first(fields, "csrf"))
+    return fields
+
+
+ResearchersForm = Annotated[dict[str, list[str]], Depends(researchers_form)]

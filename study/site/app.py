@@ -1,0 +1,130 @@
+"""The site as an application, built from its settings."""
+
+from __future__ import annotations
+
+import logging
+import secrets
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
+from starlette.exceptions import HTTPException
+
+from study.data.database import open_database
+from study.data.refusals import RefusedError, WithdrawnError
+from study.data.studies import Study
+from study.settings import Settings
+from study.site import (
+    beginning,
+    clips,
+    dashboard,
+    door,
+    downloads,
+    gallery,
+    leaving,
+    news,
+    preparing,
+    results,
+    trial,
+)
+from study.site.access import Elsewhere, ForgedError
+from study.site.headers import SecureHeaders
+from study.site.media import ClipShelf
+from study.site.place import NoStudyError, Place
+from study.site.problems import problem_page
+
+log = logging.getLogger("ocularist.site")
+FOR_SCRIPTS = ("/events", "/preparing/state")
+ROOMS = (
+    beginning,
+    preparing,
+    trial,
+    news,
+    leaving,
+    clips,
+    door,
+    dashboard,
+    gallery,
+    results,
+    downloads,
+)
+
+
+def create_app(settings: Settings, *, study: Study | None = None) -> FastAPI:
+    """Build the site.
+
+    ``study`` is the one that newcomers take part in; without it the database's latest. People who
+    have begun another one go on with theirs.
+    """
+    place = Place(
+        settings=settings,
+        db=open_database(settings.database_url),
+        study_id=None if study is None else study.id,
+        clips=ClipShelf(settings.media_folder),
+        secret=settings.secret_key(),
+    )
+
+    @asynccontextmanager
+    async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
+        yield
+        place.db.close()
+
+    app = FastAPI(title="Ocularist", openapi_url=None, lifespan=lifespan)
+    app.state.place = place
+    app.add_middleware(SecureHeaders)
+    for room in ROOMS:
+        app.include_router(room.router)
+    _handle_errors(app)
+    return app
+
+
+def _handle_errors(app: FastAPI) -> None:
+    @app.exception_handler(Elsewhere)
+    async def lead(request: Request, error: Elsewhere) -> Response:
+        if request.url.path in FOR_SCRIPTS:  # a script must not take another page for a "yes"
+            return _answer(request, 401, "NOT-SIGNED-IN")
+        return RedirectResponse(error.url, status_code=303)
+
+    @app.exception_handler(ForgedError)
+    async def forged(request: Request, _error: ForgedError) -> Response:
+        return _answer(request, 403, "FORM-OLD")
+
+    @app.exception_handler(WithdrawnError)
+    async def withdrawn(request: Request, _error: WithdrawnError) -> Response:
+        if request.url.path in FOR_SCRIPTS:
+            return _answer(request, 410, "WITHDRAWN")
+        return RedirectResponse("/withdrawn", status_code=303)
+
+    @app.exception_handler(RefusedError)
+    async def refused(request: Request, error: RefusedError) -> Response:
+        log.info("refused: %s", error)
+        return _answer(request, 409, "OUT-OF-STEP")
+
+    @app.exception_handler(NoStudyError)
+    async def no_study(request: Request, _error: NoStudyError) -> Response:
+        return _answer(request, 503, "NO-STUDY")
+
+    @app.exception_handler(RequestValidationError)
+    async def unreadable(request: Request, _error: RequestValidationError) -> Response:
+        return _answer(request, 422, "NOT-READABLE")
+
+    @app.exception_handler(HTTPException)
+    async def http_error(request: Request, error: HTTPException) -> Response:
+        return _answer(request, error.status_code, f"PAGE-{error.status_code}")
+
+    @app.exception_handler(Exception)
+    async def broken(request: Request, error: Exception) -> Response:
+        code = f"SITE-{secrets.token_hex(3).upper()}"
+        log.error("%s: %s %s", code, request.method, request.url.path, exc_info=error)
+        return _answer(request, 500, code)
+
+
+def _answer(request: Request, status: int, code: str) -> Response:
+    """Tell a script in JSON and a person in a calm page what happened; the cause is in the log."""
+    if request.url.path in FOR_SCRIPTS:
+        return JSONResponse({"code": code}, status_code=status)
+    if request.url.path.startswith(("/static/", "/clips/")):
+        return PlainTextResponse(code, status_code=status)
+    return problem_page(request, status=status, code=code)

@@ -1,0 +1,214 @@
+"""From the first page to the instructions: who takes part, on what terms, and what they do."""
+
+from __future__ import annotations
+
+import math
+import secrets
+from typing import Any, Final
+
+from fastapi import APIRouter, Depends, Request
+from fastapi.responses import HTMLResponse, Response
+
+from study.data import events, participants, progress
+from study.data.studies import Study
+from study.design.definition import StudyDefinition
+from study.design.questions import AnswerError
+from study.site.access import (
+    PARTICIPANT_COOKIE,
+    REMEMBER_S,
+    AVisitor,
+    ForgedError,
+    MaybeVisitor,
+    Visitor,
+    VisitorsForm,
+    redirect,
+    remember,
+    step_of,
+    to_current,
+)
+from study.site.browsers import browser_family
+from study.site.forms import answers_in, first, question_rows, read_form
+from study.site.place import Here
+from study.site.signatures import is_simulation_token
+
+router = APIRouter(default_response_class=HTMLResponse)
+
+SIMULATION_HEADER: Final = "X-Ocularist-Simulation"
+DRAFTED: Final = "drafted"
+QUESTIONNAIRE_S: Final = 45  # for one clip's questions, by our own trials
+AROUND_S: Final = 150  # for everything before and after the clips
+
+
+def shared(study: Study, visitor: Visitor | None, page: str) -> dict[str, Any]:
+    """Return what every page of a participant shows."""
+    return {
+        "page": page,
+        "visitor": visitor,
+        "study_title": study.title,
+        "language": study.definition.language,
+        "contact": study.definition.contact,
+        "resume_url": visitor.resume_url if visitor else "",
+    }
+
+
+def minutes_of(definition: StudyDefinition) -> int:
+    """Estimate how long taking part takes, rounded up to five minutes."""
+    one_s = 1.5 * definition.orbit.duration_s + QUESTIONNAIRE_S
+    return 5 * math.ceil((AROUND_S + len(definition.every_clip) * one_s) / 300)
+
+
+@router.get("/")
+def landing(here: Here, visitor: MaybeVisitor) -> Response:
+    """Say in plain words what this is."""
+    study = visitor.study if visitor else here.study()
+    return here.page(
+        "participant/landing.html",
+        **shared(study, visitor, "landing"),
+        is_under_way=visitor is not None and not visitor.is_over,
+        is_over=visitor is not None and visitor.is_over,
+        clip_count=len(study.definition.every_clip),
+        minutes=minutes_of(study.definition),
+    )
+
+
+@router.get("/consent")
+def consent(here: Here, visitor: MaybeVisitor) -> Response:
+    """Show what a participant agrees to."""
+    if visitor is not None:
+        return to_current(here, visitor)
+    return _consent_page(here)
+
+
+def _consent_page(here: Here, *, fault: str = "") -> Response:
+    study = here.study()
+    words = study.definition.consent
+    return here.page(
+        "participant/consent.html",
+        status=422 if fault else 200,
+        **shared(study, None, "consent"),
+        consent=words,
+        statements=statements_of(study),
+        fault=fault,
+    )
+
+
+def statements_of(study: Study) -> tuple[str, ...]:
+    """Return the sentences to tick; at least one, because agreement has to be explicit."""
+    return study.definition.consent.statements or ("I have read this page and I agree.",)
+
+
+@router.post("/consent")
+def agree(
+    request: Request,
+    here: Here,
+    visitor: MaybeVisitor,
+    fields: dict[str, list[str]] = Depends(read_form),  # noqa: B008 - FastAPI's way to inject
+) -> Response:
+    """Enrol a participant who agrees to everything in the version that they read."""
+    if visitor is not None:  # a double click, or Back and send again
+        return to_current(here, visitor)
+    study = here.study()
+    words = study.definition.consent
+    if first(fields, "version") != words.version:
+        return _consent_page(here, fault="This text has changed. Please read it once more.")
+    if len(set(fields.get("agree", ()))) < len(statements_of(study)):
+        return _consent_page(here, fault="To take part, please tick every sentence.")
+    with here.db.writing():
+        enrolment = participants.enrol(
+            here.db,
+            study,
+            simulated=_is_simulated(request, here),
+            device={"user_agent_family": browser_family(request.headers.get("user-agent", ""))},
+        )
+        progress.give_consent(
+            here.db,
+            enrolment.participant,
+            key="consent",
+            payload={"statements": list(statements_of(study))},
+        )
+    answer = redirect("/continue")
+    remember(request, answer, PARTICIPANT_COOKIE, enrolment.token, REMEMBER_S)
+    return answer
+
+
+def _is_simulated(request: Request, here: Here) -> bool:
+    """Say whether this participant is simulated; a token that is not ours is refused outright."""
+    token = request.headers.get(SIMULATION_HEADER)
+    if token is not None and not is_simulation_token(here.secret, token):
+        raise ForgedError
+    return token is not None
+
+
+@router.get("/declined")
+def declined(here: Here) -> Response:
+    """Say goodbye to someone who does not want to take part; nothing was stored."""
+    return here.page(
+        "participant/ended.html",
+        **shared(here.study(), None, "ended"),
+        heading="Thank you for your interest",
+        lines=["You are not taking part, and nothing about you was stored."],
+        offer="start",
+    )
+
+
+@router.get("/about-you")
+def about(here: Here, visitor: AVisitor) -> Response:
+    """Ask about the participant."""
+    step_of(here, visitor, "about")
+    return _about_page(here, visitor, _drafts(here, visitor), {})
+
+
+def _drafts(here: Here, visitor: Visitor) -> dict[str, object]:
+    """Return what was typed into this page before, in case it was left in the middle."""
+    drafted: dict[str, object] = {}
+    for event in events.history(here.db, visitor.participant):
+        if event.kind == DRAFTED:
+            drafted[str(event.payload["question"])] = event.payload["value"]
+    return drafted
+
+
+def _about_page(
+    here: Here, visitor: Visitor, answers: dict[str, object], faults: dict[str, str]
+) -> Response:
+    definition = visitor.study.definition
+    return here.page(
+        "participant/about.html",
+        status=422 if faults else 200,
+        **shared(visitor.study, visitor, "about"),
+        about=definition.about_page,
+        rows=question_rows(definition.about),
+        answers=answers,
+        faults=faults,
+        key=secrets.token_hex(16),
+    )
+
+
+@router.post("/about-you")
+def store_about(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
+    """Store the answers about the participant."""
+    answers = answers_in(fields, visitor.study.definition.about)
+    try:
+        progress.store_about(
+            here.db, visitor.participant, answers, key=first(fields, "key") or "about"
+        )
+    except AnswerError as error:
+        return _about_page(here, visitor, answers, error.faults)
+    return to_current(here, visitor)
+
+
+@router.get("/instructions")
+def instructions(here: Here, visitor: AVisitor) -> Response:
+    """Say what to do."""
+    step_of(here, visitor, "instructions")
+    return here.page(
+        "participant/instructions.html",
+        **shared(visitor.study, visitor, "instructions"),
+        instructions=visitor.study.definition.instructions,
+    )
+
+
+@router.post("/instructions")
+def read_instructions(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:  # noqa: ARG001 - the form carries only its proof
+    """Note that the instructions were read."""
+    progress.finish_instructions(here.db, visitor.participant, key="instructions")
+    return to_current(here, visitor)

@@ -1,0 +1,35 @@
+"""Files that never change under their names: clips by their hash, static files by their version."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+from fastapi import APIRouter, HTTPException
+from fastapi.responses import FileResponse, Response
+
+from study.site.place import Here
+
+router = APIRouter()
+FOR_EVER: Final = {"Cache-Control": "public, max-age=31536000, immutable"}
+TYPES: Final = {".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+
+
+@router.get("/clips/{name}.mp4")
+@router.head("/clips/{name}.mp4", include_in_schema=False)
+def clip(here: Here, name: str) -> Response:
+    """Serve a clip, whole or by byte ranges (Safari plays nothing without them)."""
+    path = here.clips.file(name)
+    if path is None:
+        raise HTTPException(404)
+    return FileResponse(path, media_type="video/mp4", headers=FOR_EVER)
+
+
+@router.get("/static/{version}/{name}")
+def static(here: Here, version: str, name: str) -> Response:
+    """Serve a style sheet, script or icon; an old version's name gets the present file, unkept."""
+    path = here.static_folder / Path(name).name
+    if path.suffix not in TYPES or not path.is_file():
+        raise HTTPException(404)
+    headers = FOR_EVER if version == here.static_version else {}
+    return FileResponse(path, media_type=TYPES[path.suffix], headers=headers)

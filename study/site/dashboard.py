@@ -1,0 +1,103 @@
+"""The researcher's overview: how many people, is the data good, how far are the clips."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any
+
+from fastapi import APIRouter
+from fastapi.responses import HTMLResponse, Response
+
+from study.data import dashboard, jobs
+from study.data.quality import quality
+from study.data.studies import Study
+from study.site.access import ResearcherHere, ResearchersForm, SignedIn, redirect
+from study.site.place import Here
+
+router = APIRouter(default_response_class=HTMLResponse)
+
+
+def frame(study: Study, researcher: SignedIn, section: str, heading: str) -> dict[str, Any]:
+    """Return what every page of the dashboard shows."""
+    return {
+        "study_title": study.title,
+        "study": study,
+        "researcher": researcher,
+        "section": section,
+        "heading": heading,
+        "ago": ago,
+        "duration": duration,
+    }
+
+
+def ago(moment: datetime, now: datetime) -> str:
+    """Say how long ago something was: "just now", "4 min ago"."""
+    seconds = (now - moment).total_seconds()
+    return "just now" if seconds < 45 else f"{duration(seconds)} ago"
+
+
+def duration(seconds: float | None) -> str:
+    """Write a duration for a glance: "50 s", "4 min", "3 h", "2 days"."""
+    if seconds is None:
+        return "not known yet"
+    for size, unit in ((86400, "days"), (3600, "h"), (60, "min")):
+        if seconds >= 2 * size or (unit == "min" and seconds >= 60):
+            return f"{round(seconds / size)} {unit}"
+    return f"{round(seconds)} s"
+
+
+@router.get("/researcher")
+def overview(here: Here, researcher: ResearcherHere) -> Response:
+    """Show the study at a glance."""
+    study = here.study()
+    found = dashboard.summary(here.db, study)
+    return here.page(
+        "researcher/overview.html",
+        **frame(study, researcher, "", "Overview"),
+        found=found,
+        kinds=[
+            (label, counts, quality(here.db, study, simulated=is_simulated), is_simulated)
+            for label, counts, is_simulated in (
+                ("People", found.real, False),
+                ("Simulated", found.simulated, True),
+            )
+            if counts.arrived or not is_simulated
+        ],
+        jobs=_interesting(jobs.all_jobs(here.db, wanted_ids(study))),
+        clips=_clips_by_id(study),
+    )
+
+
+def wanted_ids(study: Study) -> set[str]:
+    """Return the ids of every clip that the study wants in any size and direction."""
+    return {wanted.spec.clip_id for wanted in study.definition.wanted_specs()}
+
+
+def _interesting(found: list[jobs.Job]) -> list[jobs.Job]:
+    """Return what needs a look: failures, what is being rendered, and what comes next."""
+    order = {jobs.FAILED: 0, jobs.CLAIMED: 1, jobs.QUEUED: 2}
+    listed = sorted((j for j in found if j.state in order), key=lambda j: order[j.state])
+    return listed[:8]
+
+
+def _clips_by_id(study: Study) -> Mapping[str, str]:
+    return {wanted.spec.clip_id: wanted.clip.id for wanted in study.definition.wanted_specs()}
+
+
+@router.get("/researcher/people")
+def people(here: Here, researcher: ResearcherHere) -> Response:
+    """Show who is where."""
+    study = here.study()
+    return here.page(
+        "researcher/people.html",
+        **frame(study, researcher, "/people", "People"),
+        found=dashboard.summary(here.db, study),
+    )
+
+
+@router.post("/researcher/jobs/{clip_id}/again")
+def again(here: Here, fields: ResearchersForm, clip_id: str) -> Response:  # noqa: ARG001 - the form carries only its proof
+    """Queue a clip again, whatever became of it."""
+    jobs.requeue(here.db, [clip_id])
+    return redirect("/researcher")

@@ -1,0 +1,139 @@
+"""Pausing, coming back, stopping, finishing, and handing a shared computer to the next person."""
+
+from __future__ import annotations
+
+import secrets
+
+from fastapi import APIRouter, Depends, Request
+from fastapi.responses import HTMLResponse, Response
+
+from study.data import completion, events, participants
+from study.site.access import (
+    PARTICIPANT_COOKIE,
+    REMEMBER_S,
+    AVisitor,
+    MaybeVisitor,
+    Visitor,
+    VisitorsForm,
+    check_csrf,
+    redirect,
+    remember,
+    step_of,
+    to_current,
+)
+from study.site.beginning import shared
+from study.site.forms import first, read_form
+from study.site.place import Here
+
+router = APIRouter(default_response_class=HTMLResponse)
+STOPPED = "stopped"
+
+
+@router.get("/continue")
+def go_on(here: Here, visitor: MaybeVisitor) -> Response:
+    """Lead a participant to where they are."""
+    return redirect("/") if visitor is None else to_current(here, visitor)
+
+
+@router.get("/resume/{token}", name="resume")
+def resume(request: Request, here: Here, token: str) -> Response:
+    """Take a participant in again by their personal link, in any browser."""
+    if participants.by_token(here.db, token) is None:
+        return redirect("/")
+    answer = redirect("/continue")
+    remember(request, answer, PARTICIPANT_COOKIE, token, REMEMBER_S)
+    return answer
+
+
+@router.get("/thanks")
+def thanks(here: Here, visitor: AVisitor) -> Response:
+    """Thank, with the code that proves that every answer is stored."""
+    step_of(here, visitor, "thanks")
+    return here.page(
+        "participant/thanks.html",
+        **shared(visitor.study, visitor, "thanks"),
+        thanks=visitor.study.definition.thanks,
+        completion_code=completion.code(here.db, visitor.participant),
+    )
+
+
+@router.get("/withdrawn")
+def withdrawn(here: Here, visitor: AVisitor) -> Response:
+    """Confirm that the answers of someone who withdrew are gone."""
+    step_of(here, visitor, "withdrawn")
+    return _ended(
+        here,
+        visitor,
+        "You have withdrawn",
+        "Your answers are removed. Only the date on which someone withdrew is kept.",
+        "Thank you for the time you gave.",
+    )
+
+
+@router.get("/stop")
+def stop(here: Here, visitor: AVisitor) -> Response:
+    """Offer a break, an end, or withdrawal."""
+    if visitor.participant.withdrawn_at:
+        return redirect("/withdrawn")
+    return here.page("participant/stop.html", **shared(visitor.study, visitor, "stop"), fault="")
+
+
+@router.post("/stop")
+def end(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
+    """End the participation, with the answers kept or removed as the participant chose."""
+    if first(fields, "choice") != "remove":
+        return _keep_and_end(here, visitor)
+    if first(fields, "sure") != "yes":
+        return here.page(
+            "participant/stop.html",
+            status=422,
+            **shared(visitor.study, visitor, "stop"),
+            fault="To withdraw, please tick the sentence above the button.",
+        )
+    participants.withdraw(here.db, visitor.participant)
+    return redirect("/withdrawn")
+
+
+def _keep_and_end(here: Here, visitor: Visitor) -> Response:
+    events.record(here.db, visitor.participant, key=f"stop-{secrets.token_hex(8)}", kind=STOPPED)
+    page = _ended(
+        here,
+        visitor,
+        "Thank you for taking part",
+        "You have ended the study. The answers you gave are kept.",
+        "If you change your mind, your personal link still leads to your place: "
+        + visitor.resume_url,
+    )
+    page.delete_cookie(PARTICIPANT_COOKIE)
+    return page
+
+
+def _ended(here: Here, visitor: Visitor, heading: str, *lines: str) -> Response:
+    return here.page(
+        "participant/ended.html",
+        **{**shared(visitor.study, visitor, "ended"), "visitor": None},
+        heading=heading,
+        lines=lines,
+        offer="next",
+    )
+
+
+@router.get("/next")
+def hand_over(here: Here, visitor: MaybeVisitor) -> Response:
+    """Offer a shared computer to the next person, once nothing waits in this browser."""
+    study = visitor.study if visitor else here.study()
+    return here.page("participant/next.html", **shared(study, visitor, "next"))
+
+
+@router.post("/next")
+def forget(
+    here: Here,
+    visitor: MaybeVisitor,
+    fields: dict[str, list[str]] = Depends(read_form),  # noqa: B008 - FastAPI's way to inject
+) -> Response:
+    """Make this browser forget its participant."""
+    answer = redirect("/")
+    if visitor is not None:
+        check_csrf(here.secret, visitor.token, first(fields, "csrf"))
+        answer.delete_cookie(PARTICIPANT_COOKIE)
+    return answer

@@ -1,0 +1,125 @@
+"""Waiting for the clips, and the choice of the size that this screen can show."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query
+from fastapi.responses import HTMLResponse, Response
+
+from study.data import arms, jobs, participants, progress, trials
+from study.data.arms import Screen
+from study.data.participants import Participant
+from study.design.parts import Size
+from study.site.access import AVisitor, Visitor, VisitorsForm, redirect, step_of, to_current
+from study.site.beginning import shared
+from study.site.forms import first
+from study.site.media import to_preload
+from study.site.place import Here
+
+router = APIRouter()
+Pixels = Annotated[int, Query(ge=1, le=100_000)]
+
+
+@router.get("/preparing", response_class=HTMLResponse)
+def preparing(here: Here, visitor: AVisitor) -> Response:
+    """Show how far the clips are; a script asks ``/preparing/state`` and goes on by itself."""
+    step_of(here, visitor, "preparing")
+    return here.page(
+        "participant/preparing.html",
+        **shared(visitor.study, visitor, "preparing"),
+        smallest=min(visitor.study.definition.sizes, key=lambda size: size.width),
+        has_practice=bool(visitor.study.definition.practice),
+    )
+
+
+@router.get("/preparing/state")
+def state(
+    here: Here, visitor: AVisitor, screen_width_px: Pixels, screen_height_px: Pixels
+) -> dict[str, Any]:
+    """Say whether the clips for this screen are ready, and if so which to load.
+
+    The arm is leased here, because its clips are what the browser loads.
+    """
+    screen = (screen_width_px, screen_height_px)
+    ready = arms.readiness(here.db, visitor.participant, screen=screen)
+    news = {
+        "fits": ready.fits,
+        "is_ready": False,
+        "progress": round(ready.progress, 4),
+        "wait": _wait(here, visitor, screen),
+        "clips": [],
+    }
+    if not ready.is_ready:
+        return news
+    leased = arms.assign(here.db, visitor.participant, screen=screen)
+    clips = None if leased is None else _clips(here, leased)
+    return news if clips is None else {**news, "is_ready": True, "clips": clips}
+
+
+def _clips(here: Here, participant: Participant) -> list[dict[str, Any]] | None:
+    """Return what to load, each clip once and in order, or None while a file is missing."""
+    ids = dict.fromkeys(trials.clip_ids(here.db, participant))
+    records = [here.clips.record(clip_id) for clip_id in ids]
+    found = [to_preload(record) for record in records if record is not None]
+    return found if len(found) == len(ids) else None
+
+
+def _wait(here: Here, visitor: Visitor, screen: Screen) -> str:
+    """Say in calm words how long the nearest complete set of clips takes."""
+    definition = visitor.study.definition
+    nearest = _nearest(here, visitor, arms.fitting_sizes(definition, screen))
+    if nearest is None or nearest.left_s is None:
+        return "We cannot say yet how long it takes."
+    if nearest.left_s < 60:
+        return "Less than a minute is left."
+    return f"About {math.ceil(nearest.left_s / 60)} minutes are left."
+
+
+def _nearest(here: Here, visitor: Visitor, sizes: list[Size]) -> jobs.Summary | None:
+    definition = visitor.study.definition
+    summaries = [
+        jobs.summary(
+            here.db, {spec.clip_id for spec in definition.clip_specs(size, direction).values()}
+        )
+        for size in sizes
+        for direction in definition.orbit.directions
+    ]
+    return max(summaries, key=lambda summary: summary.progress, default=None)
+
+
+@router.post("/preparing")
+def begin(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
+    """Begin the trials with the clips that were loaded."""
+    facts = {name: _number(first(fields, name)) for name in _FACTS}
+    screen = (int(facts["screen_width_px"]), int(facts["screen_height_px"]))
+    leased = arms.assign(here.db, visitor.participant, screen=screen if all(screen) else None)
+    if leased is None:
+        return redirect("/preparing")
+    progress.begin(here.db, visitor.participant, key="begin", payload=facts)
+    ratio = facts["pixel_ratio"] or 1.0
+    participants.seen(
+        here.db,
+        visitor.participant,
+        device={
+            "screen_width": round(screen[0] / ratio),
+            "screen_height": round(screen[1] / ratio),
+            "pixel_ratio": ratio,
+        }
+        if all(screen)
+        else None,
+    )
+    return to_current(here, visitor)
+
+
+_FACTS = ("screen_width_px", "screen_height_px", "pixel_ratio")
+
+
+def _number(text: str) -> float:
+    """Read a number that a browser reports; 0 for anything else."""
+    try:
+        value = float(text)
+    except ValueError:
+        return 0.0
+    return value if math.isfinite(value) and 0 < value <= 100_000 else 0.0
