@@ -22,6 +22,7 @@ PHENOTYPE: Final = {"gender": 0.1, "age": 0.56, "muscle": 0.5, "weight": 0.47, "
 RACES: Final = {"caucasian": 0.75, "asian": 0.13, "african": 0.12}
 # Away from the average that MakeHuman starts from: an average of faces looks like a doll.
 FACE: Final = {
+    "eyebrows/eyebrows-trans-backward": 0.5,
     "head/head-oval": 0.4,
     "head/head-scale-vert-decr": 0.15,
     "head/head-scale-horiz-decr": 0.35,

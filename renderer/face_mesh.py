@@ -20,8 +20,9 @@ from renderer.character import SET_BACK_MM, Figure, figure
 from renderer.makehuman import Floats, Indices, Mesh, data_folder
 from renderer.subdivide import subdivide
 
-FINE_BOX_MM: Final = ((-98.0, -68.0, -75.0), (98.0, 62.0, 60.0))  # what close views can show
+FINE_BOX_MM: Final = ((-86.0, -52.0, -62.0), (86.0, 50.0, 60.0))  # what close views can show
 LOWEST_MM: Final = -215.0  # below it the collar hides the neck
+SEAM_SINK_MM: Final = 0.12  # the patches' last rings dive under the face
 SOCKET_MM: Final = 18.2  # around MakeHuman's globe: everything nearer is socket or inner lid
 
 
@@ -43,6 +44,7 @@ class SkinPart:
     caruncle: Floats
     wet: Floats
     along_mm: Floats
+    sink_mm: Floats | float = 0.0  # below the surface, so that overlapping meshes do not fight
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,7 @@ class FaceMesh:
     patches: tuple[SkinPart, SkinPart]
     corners: tuple[SkinPart, SkinPart]
     lids: tuple[lid_fit.LidPatch, lid_fit.LidPatch]
+    sockets: tuple[lid_fit.Socket, lid_fit.Socket]
 
 
 @functools.cache
@@ -64,7 +67,7 @@ def face_mesh() -> FaceMesh:
     vertices, quads = _head_cage(body)
     level1, quads1 = subdivide(vertices, quads)
     level2, quads2 = subdivide(level1, quads1)
-    sockets = tuple(_socket(level2, quads2, eye) for eye in (0, 1))
+    sockets = (_socket(level2, quads2, 0), _socket(level2, quads2, 1))
     lids = (lid_fit.fit_lids(sockets[0]), lid_fit.fit_lids(sockets[1]))
     quads1 = quads1[~_in_eye(level1, quads1)]
     quads2 = quads2[~_in_eye(level2, quads2)]
@@ -76,6 +79,7 @@ def face_mesh() -> FaceMesh:
         patches=(_patch(lids[0], 0), _patch(lids[1], 1)),
         corners=(_corners(0), _corners(1)),
         lids=lids,
+        sockets=sockets,
     )
 
 
@@ -91,7 +95,7 @@ def to_patch(points: Floats, eye: int) -> Floats:
 
 def triangles_of(quads: Indices) -> Indices:
     """Split quads (m, 4) into triangles (2 m, 3)."""
-    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    return quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
 
 
 def vertex_normals(points: Floats, triangles: Indices) -> Floats:
@@ -202,6 +206,7 @@ def _patch(lid: lid_fit.LidPatch, eye: int) -> SkinPart:
         zero,
         wet.ravel(),
         np.stack([turn, across], axis=-1).reshape(-1, 2),
+        (SEAM_SINK_MM * (np.arange(along) >= along - 3) * np.ones((around, 1))).ravel(),
     )
 
 

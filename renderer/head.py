@@ -6,6 +6,7 @@ light, and a frame only projects and textures it.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Final
 
 import moderngl
@@ -17,25 +18,25 @@ from renderer.camera import Matrix
 from renderer.character import figure
 from renderer.clip import ClipSpec
 from renderer.clothing import COLOUR, knit_tile, sweater
-from renderer.face_mesh import SkinPart, face_mesh
+from renderer.face_mesh import SkinPart, face_mesh, to_world
 from renderer.head_buffers import CellMesh
 from renderer.lid_fit import ALONG, AROUND, grid_quads, lid_rims
+from renderer.lashes import grow_brow, grow_lashes
 from renderer.lids import LidRims
 from renderer.light import Light
 from renderer.makehuman import Floats, Indices
-from renderer.occlusion import look_up, sky_visibility
+from renderer.sky_visibility import Region, look_up, sky_visibility
 from renderer.program import build_program
 from renderer.skin import TILE_MM, TILE_PX, detail_coordinates, paint, pore_tile
 from renderer.skin_light import SkinLight, light_skin
+from renderer.strand_buffers import StrandMesh
 
 CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
+SAMPLE_ALPHA_TO_COVERAGE: Final = 0x809E
+HAIR_BIAS_MM: Final = 1.2
+HAIR_SEED: Final = 20
 SUN_LIFT_MM: Final = 0.35
 LINES_PER_MM_AT_1MM: Final = 1080 / (2 * 0.10510424)  # pixels per mm at 1 mm for 12 degrees
-_STATIC: Final = (
-    "3f 3f 3f 4f 1f",
-    ["in_position", "in_normal", "in_albedo", "in_detail", "in_lid"],
-)
-_LIT: Final = ("3f 4f", ["in_diffuse", "in_surface"])
 
 
 class Head:
@@ -49,6 +50,7 @@ class Head:
         self._programs = {
             "skin": build_program(gl, "skin.vert", fragment="skin.frag"),
             "fabric": build_program(gl, "skin.vert", fragment="fabric.frag"),
+            "hair": build_program(gl, "hair.vert", fragment="hair.frag"),
             "depth": build_program(gl, "depth.vert", fragment="depth.frag"),
         }
         self._pores = _tile(gl, pore_tile_cached())
@@ -56,6 +58,7 @@ class Head:
         self._skin = _Skin(gl)
         self._cloth = _Cloth(gl)
         self._open_sky = self._bake_open_sky()
+        self._hair = _grow_hair(gl)
         self._lit_by: Light | None = None
 
     def draw(
@@ -76,7 +79,7 @@ class Head:
         skin, fabric = self._programs["skin"], self._programs["fabric"]
         level = max(0.0, np.log2(TILE_PX / TILE_MM / density))
         skin.set(**common, u_pores=self._pores, u_pore_level=level)
-        for mesh in self._skin.meshes(close=distance < CLOSE_MM):
+        for mesh in self._skin.close if distance < CLOSE_MM else self._skin.distant:
             mesh.draw(skin, clip)
         fabric.set(**common, u_knit=self._knit, u_knit_level=max(0.0, np.log2(35.0 / density)))
         self._cloth.mesh.draw(fabric, clip)
@@ -85,6 +88,23 @@ class Head:
         self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
     ) -> None:
         """Draw lashes, brows and hair; they cover samples by their alpha."""
+        self._light(light)
+        program = self._programs["hair"]
+        self.gl.enable_only(moderngl.DEPTH_TEST)
+        self.gl.enable_direct(SAMPLE_ALPHA_TO_COVERAGE)
+        program.set(
+            u_view_matrix=view_matrix,
+            u_projection=projection,
+            u_camera_mm=camera_mm,
+            u_pixel_per_mm=LINES_PER_MM_AT_1MM,
+            u_pixel_mm=float(np.linalg.norm(np.asarray(camera_mm))) / LINES_PER_MM_AT_1MM,
+            u_shadow_bias_mm=HAIR_BIAS_MM,
+            u_gloss=1.0,
+            **light.uniforms(),
+        )
+        for mesh in self._hair:
+            mesh.draw(program)
+        self.gl.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
 
     def draw_depth(self, matrix: npt.ArrayLike) -> None:
         """Draw skin and sweater into a depth map with a world-to-clip matrix."""
@@ -92,34 +112,24 @@ class Head:
         program.set(u_world_to_clip=matrix)
         clip = np.asarray(matrix, dtype=float)
         self.gl.disable(moderngl.CULL_FACE)
-        for mesh in [*self._skin.meshes(close=True), self._cloth.mesh]:
+        for mesh in [*self._skin.close, self._cloth.mesh]:
             mesh.draw(program, clip)
 
     def _bake_open_sky(self) -> dict[str, npt.NDArray[np.float32]]:
         def make() -> dict[str, Any]:
-            head = ((0.0, -30.0, -50.0), 190.0)
-            eyes = [((x, 0.0, 5.0), 34.0) for x in (-31.0, 31.0)]
-            places = {
-                "fine": head,
-                "rest": head,
-                "coarse": head,
-                "patch0": eyes[0],
-                "patch1": eyes[1],
-                "corner0": eyes[0],
-                "corner1": eyes[1],
+            parts = {
+                name: (part.points_mm, part.normals) for name, part in self._skin.parts.items()
             }
-            regions = [
-                (part.points_mm, part.normals, *places[name])
-                for name, part in self._skin.parts.items()
-            ]
             cloth = self._cloth.garment
-            regions.append((cloth.points_mm, cloth.normals, (0.0, -350.0, -50.0), 520.0))
+            head = {name: parts[name] for name in ("fine", "rest", "coarse")}
+            regions = [Region((0.0, -30.0, -50.0), 190.0, head)]
+            for eye, x in enumerate((-31.0, 31.0)):
+                meshes = {name: parts[name] for name in (f"patch{eye}", f"corner{eye}")}
+                regions.append(Region((x, 0.0, 5.0), 34.0, meshes))
+            meshes = {"cloth": (cloth.points_mm, cloth.normals)}
+            regions.append(Region((0.0, -350.0, -50.0), 520.0, meshes))
             shares = sky_visibility(self.gl, self.draw_depth, regions)
-            names = [*self._skin.parts, "cloth"]
-            return {
-                name: np.round(share * 255).astype(np.uint8)
-                for name, share in zip(names, shares, strict=True)
-            }
+            return {name: np.round(share * 255).astype(np.uint8) for name, share in shares.items()}
 
         kept = cached_arrays("head's open sky", make)
         return {
@@ -155,7 +165,7 @@ class Head:
 
 
 class _Skin:
-    """The skin's vertex buffers and the meshes that index them."""
+    """The skin's parts and the meshes that draw them."""
 
     def __init__(self, gl: moderngl.Context) -> None:
         face = face_mesh()
@@ -168,75 +178,49 @@ class _Skin:
             "corner0": face.corners[0],
             "corner1": face.corners[1],
         }
-        painted = {name: paint(part) for name, part in self.parts.items()}
-        self._gloss = {name: gloss for name, (_, gloss) in painted.items()}
-        static = np.concatenate(
-            [_static(part, painted[name][0]) for name, part in self.parts.items()]
-        )
-        self._light_buffer = gl.buffer(reserve=len(static) * 7 * 4)
-        buffers = [
-            (gl.buffer(static.astype(np.float32).tobytes()), *_STATIC),
-            (self._light_buffer, *_LIT),
-        ]
-        points = static[:, :3]
-        starts = dict(
-            zip(
-                self.parts,
-                np.cumsum([0, *(len(p.points_mm) for p in self.parts.values())]),
-                strict=False,
-            )
-        )
-        plain = {name: part.triangles + starts[name] for name, part in self.parts.items()}
-        for eye in (0, 1):
-            plain[f"plain{eye}"] = _coarse_patch(eye) + starts[f"patch{eye}"]
-        self._meshes = {
-            name: CellMesh(gl, points, triangles, buffers=buffers)
-            for name, triangles in plain.items()
-        }
-
-    def meshes(self, *, close: bool) -> list[CellMesh]:
-        """Return what a close or a distant view draws."""
-        corners = ["corner0", "corner1"]
-        names = ["fine", "rest", "patch0", "patch1"] if close else ["coarse", "plain0", "plain1"]
-        return [self._meshes[name] for name in names + corners]
+        self._gloss: dict[str, Floats] = {}
+        self._meshes: dict[str, list[CellMesh]] = {}
+        self.close: list[CellMesh] = []
+        self.distant: list[CellMesh] = []
+        for name, part in self.parts.items():
+            albedo, self._gloss[name] = paint(part)
+            rows = _static(part, albedo)
+            meshes = {"all": CellMesh(gl, rows, part.triangles)}
+            if name.startswith("patch"):
+                meshes["thinned"] = CellMesh(gl, rows, _coarse_patch(int(name[-1])))
+            self._meshes[name] = list(meshes.values())
+            if name != "coarse":
+                self.close.append(meshes["all"])
+            if name not in ("fine", "rest"):
+                self.distant.append(meshes.get("thinned", meshes["all"]))
 
     def write_light(self, lights: dict[str, SkinLight]) -> None:
         """Replace the baked light of every part."""
-        rows = [
-            _lit_rows(lights[name], gloss=self._gloss[name], wet=part.wet)
-            for name, part in self.parts.items()
-        ]
-        self._light_buffer.write(np.concatenate(rows).astype(np.float32).tobytes())
+        for name, part in self.parts.items():
+            rows = _lit_rows(lights[name], gloss=self._gloss[name], wet=part.wet)
+            for mesh in self._meshes[name]:
+                mesh.write_light(rows)
 
 
 class _Cloth:
-    """The sweater's buffers."""
+    """The sweater and its mesh."""
 
     def __init__(self, gl: moderngl.Context) -> None:
         self.garment = sweater(figure())
         count = len(self.garment.points_mm)
-        static = np.column_stack(
-            [
-                self.garment.points_mm,
-                self.garment.normals,
-                np.tile(COLOUR, (count, 1)),
-                self.garment.knit,
-                np.zeros((count, 3)),
-            ]
-        )
-        self._light_buffer = gl.buffer(reserve=count * 7 * 4)
-        buffers = [
-            (gl.buffer(static.astype(np.float32).tobytes()), *_STATIC),
-            (self._light_buffer, *_LIT),
+        rows = [
+            self.garment.points_mm,
+            self.garment.normals,
+            np.tile(COLOUR, (count, 1)),
+            self.garment.knit,
+            np.zeros((count, 3)),
         ]
-        self.mesh = CellMesh(gl, self.garment.points_mm, self.garment.triangles, buffers=buffers)
+        self.mesh = CellMesh(gl, np.column_stack(rows), self.garment.triangles)
 
     def write_light(self, light: SkinLight) -> None:
         """Replace the baked light."""
         zero = np.zeros(len(light.sun))
-        self._light_buffer.write(
-            _lit_rows(light, gloss=zero, wet=zero).astype(np.float32).tobytes()
-        )
+        self.mesh.write_light(_lit_rows(light, gloss=zero, wet=zero))
 
 
 def pore_tile_cached() -> npt.NDArray[np.uint8]:
@@ -244,9 +228,22 @@ def pore_tile_cached() -> npt.NDArray[np.uint8]:
     return cached_arrays("skin's pores", lambda: {"tile": pore_tile()})["tile"].astype(np.uint8)
 
 
+def _grow_hair(gl: moderngl.Context) -> list[StrandMesh]:
+    """Grow lashes and brows on both sides, mirrored in their laws, not hair by hair."""
+    face = face_mesh()
+    meshes = []
+    for eye in (0, 1):
+        rng = np.random.Generator(np.random.PCG64(HAIR_SEED + eye))
+        for strands in (grow_lashes(face.lids[eye], rng), grow_brow(face.sockets[eye], rng)):
+            placed = replace(strands, points_mm=to_world(strands.points_mm, eye))
+            meshes.append(StrandMesh(gl, placed, rng))
+    return meshes
+
+
 def _static(part: SkinPart, albedo: Floats) -> Floats:
     detail = detail_coordinates(part.points_mm)
-    return np.column_stack([part.points_mm, part.normals, albedo, detail, part.along_mm, part.lid])
+    sunk = part.points_mm - part.normals * np.reshape(part.sink_mm, (-1, 1))
+    return np.column_stack([sunk, part.normals, albedo, detail, part.along_mm, part.lid])
 
 
 def _lit_rows(light: SkinLight, *, gloss: Floats, wet: Floats) -> Floats:

@@ -13,6 +13,8 @@ from renderer.makehuman import Floats, Indices
 from renderer.program import Program
 
 CELL_MM: Final = 36.0
+STATIC: Final = ("3f 3f 3f 4f 1f", ["in_position", "in_normal", "in_albedo", "in_detail", "in_lid"])
+LIT: Final = ("3f 4f", ["in_diffuse", "in_surface"])
 
 
 @dataclass(frozen=True)
@@ -57,22 +59,24 @@ def sort_into_cells(points: Floats, triangles: Indices) -> tuple[Indices, Cells]
 
 
 class CellMesh:
-    """Triangles of one vertex buffer, drawn cell by cell with several programs."""
+    """Triangles drawn cell by cell. Its vertices lie in the order of their use.
 
-    def __init__(
-        self,
-        gl: moderngl.Context,
-        points: Floats,
-        triangles: Indices,
-        *,
-        buffers: list[tuple[moderngl.Buffer, str, list[str]]],
-    ) -> None:
-        """``buffers``: vertex buffers with moderngl's format and the attributes' names."""
-        ordered, self.cells = sort_into_cells(points, triangles)
+    Software renderers shade long runs of neighbouring vertices several times faster.
+    """
+
+    def __init__(self, gl: moderngl.Context, rows: Floats, triangles: Indices) -> None:
+        """``rows`` (n, 14) are what STATIC names, of all the vertices that ``triangles`` count."""
+        ordered, self.cells = sort_into_cells(rows[:, :3], triangles)
+        self._used, numbers = _by_first_use(ordered)
         self._gl = gl
-        self._index = gl.buffer(ordered.astype(np.int32).tobytes())
-        self._buffers = buffers
+        self._index = gl.buffer(numbers.astype(np.int32).tobytes())
+        self._static = gl.buffer(rows[self._used].astype(np.float32).tobytes())
+        self._light = gl.buffer(reserve=len(self._used) * 7 * 4)
         self._arrays: dict[int, moderngl.VertexArray] = {}
+
+    def write_light(self, rows: Floats) -> None:
+        """Replace the baked light: rows (n, 7) are what LIT names, for the same n vertices."""
+        self._light.write(rows[self._used].astype(np.float32).tobytes())
 
     def draw(self, program: Program, clip: Matrix | Floats) -> None:
         """Draw the cells that a world-to-clip matrix can show."""
@@ -84,12 +88,23 @@ class CellMesh:
         key = program.gl_program.glo
         if key not in self._arrays:
             content = [
-                (buffer, *_used(program, layout, names)) for buffer, layout, names in self._buffers
+                (buffer, *_used(program, layout, names))
+                for buffer, (layout, names) in ((self._static, STATIC), (self._light, LIT))
             ]
             self._arrays[key] = self._gl.vertex_array(
                 program.gl_program, [entry for entry in content if len(entry) > 2], self._index
             )
         return self._arrays[key]
+
+
+def _by_first_use(triangles: Indices) -> tuple[Indices, Indices]:
+    """Return the vertices in the order in which triangles name them, and the renumbered triangles."""
+    flat = triangles.ravel()
+    used, first, inverse = np.unique(flat, return_index=True, return_inverse=True)
+    order = np.argsort(first, kind="stable")
+    rank = np.empty(len(order), dtype=np.int64)
+    rank[order] = np.arange(len(order))
+    return used[order], rank[inverse.ravel()]
 
 
 def _used(program: Program, layout: str, names: list[str]) -> tuple[str, ...]:

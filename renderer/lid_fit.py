@@ -26,10 +26,10 @@ MEDIAL_Z_MM: Final = 8.0
 CLEARANCE_MM: Final = 0.06  # tear film between rim and globe
 MARGIN_MM: Final = 1.9  # lid thickness at the rim
 OUTLINE_MM: Final = (24.5, 19.5, 17.5, 17.0)  # patch ends: temple, nose, up, down of (0, 0)
-# Lift in mm of the outermost rings over the face, and how far they obey: the last one sinks.
-ENDING: Final = ((0.0, 0.6), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (-0.02, 1.0), (-0.3, 1.0))
-AROUND: Final = 288
-ALONG: Final = 72
+# Lift in mm of the outermost rings over the face, and how far they obey.
+ENDING: Final = ((0.0, 0.6), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0))
+AROUND: Final = 192
+ALONG: Final = 54
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ def _control_net(inner: Floats, is_upper: Floats, socket: Socket) -> tuple[Float
 
 
 def _settle(net: Floats, socket: Socket) -> None:
-    """Lay the outermost controls back on the face after smoothing, and the very last below it."""
+    """Lay the outermost controls back on the face after smoothing."""
     for row, (lift, share) in enumerate(ENDING, start=net.shape[1] - len(ENDING)):
         height = socket.height(net[:, row, :2]) + lift
         net[:, row, 2] += (height - net[:, row, 2]) * share
@@ -303,7 +303,7 @@ def _lower_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
         d = distance * (0.45 + 0.55 * away)
         skin = _skin_point(edge, outward, d, lift * away)
         face = _face_point(edge, outward, d, socket=socket, lift=lift * away)
-        blend = _smooth((distance - 0.5) / 7.0 * one)[:, None]
+        blend = _smooth((distance * (1 + 2.0 * canthus) - 0.5) / 7.0)[:, None]
         rows.append(skin * (1 - blend) + face * blend)
     first = 6.9 * (0.45 + 0.55 * away)
     for share, lift in ((0.18, 0.35), (0.36, 0.25), (0.54, 0.12), (0.72, 0.02), (0.88, 0.0)):

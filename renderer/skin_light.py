@@ -15,7 +15,7 @@ from scipy.sparse.linalg import cg
 
 from renderer.light import Sky
 from renderer.makehuman import Floats, Indices
-from renderer.occlusion import DIRECTIONS, Visible, directions
+from renderer.sky_visibility import DIRECTIONS, Visible, directions
 
 # How far light of each colour wanders in skin, standard deviation in mm, and the share of it that
 # does (after the diffusion profiles of d'Eon and Luebke 2007, GPU Gems 3, ch. 14).

@@ -1,4 +1,8 @@
-// Provides: the skin's vertices. Light that does not change over a clip arrives baked per vertex.
+// Provides: the skin's vertices. Light that does not change over a clip arrives baked per vertex;
+// what changes slowly over the skin (mirrored sky, Fresnel) is evaluated here, not per pixel.
+
+#include "light.glsl"
+#include "specular.glsl"
 
 in vec3 in_position;
 in vec3 in_normal;
@@ -10,21 +14,36 @@ in float in_lid;      // 1 on the lids' crepe
 
 uniform mat4 u_view_matrix;
 uniform mat4 u_projection;
+uniform vec3 u_camera_mm;
 
-out vec3 v_world;
 out vec3 v_normal;
+out vec3 v_half;      // between the view and the sun
 out vec3 v_albedo;
 out vec3 v_diffuse;
-out vec4 v_surface;
+out vec3 v_sheen;     // mirrored sky
+out vec4 v_surface;   // gloss, strength of the sun's mirror image, sun visibility, wetness
 out vec4 v_detail;
 out float v_lid;
 
+const float SKIN_F0 = 0.028;
+const float TEAR_F0 = 0.021;
+
 void main() {
-    v_world = in_position;
-    v_normal = in_normal;
+    float gloss = in_surface.x, ambient = in_surface.y, sun = in_surface.z, wet = in_surface.w;
+    vec3 n = in_normal;
+    vec3 v = normalize(u_camera_mm - in_position);
+    vec3 h = normalize(v + u_sun_direction);
+    float n_dot_v = max(dot(n, v), 0.05), l_dot_h = max(dot(u_sun_direction, h), 0.1);
+    vec3 mirrored = ambient_irradiance(reflect(-v, n)) / PI * ambient;
+    v_sheen = mirrored * (ambient * environment_fresnel(n_dot_v, 0.45, SKIN_F0) * (0.6 + 0.4 * gloss)
+        + wet * environment_fresnel(n_dot_v, 0.1, TEAR_F0));
+    // Kelemen and Szirmay-Kalos 2001: visibility over the cosines is about 1 / (4 (l h)^2).
+    float strength = sun * schlick(l_dot_h, SKIN_F0) / (4.0 * l_dot_h * l_dot_h);
+    v_normal = n;
+    v_half = h;
     v_albedo = in_albedo;
     v_diffuse = in_diffuse;
-    v_surface = in_surface;
+    v_surface = vec4(gloss, strength, sun, wet);
     v_detail = in_detail;
     v_lid = in_lid;
     gl_Position = u_projection * u_view_matrix * vec4(in_position, 1.0);

@@ -1,18 +1,17 @@
-// Provides: the specular lobe of rough dielectrics, for the sun and for smooth surroundings.
+// Provides: the specular lobes of rough dielectrics, for the sun and for smooth surroundings.
 
 const float PI = 3.14159265358979;
 
-// GGX with height-correlated Smith masking (Heitz 2014) and Schlick's Fresnel, times 1; the caller
-// multiplies by irradiance (radiance times the cosine).
-float ggx(vec3 n, vec3 v, vec3 l, float roughness, float f0) {
-    vec3 h = normalize(v + l);
-    float a = roughness * roughness, a2 = a * a;
-    float NoH = max(dot(n, h), 0.0), NoV = max(dot(n, v), 0.02), NoL = max(dot(n, l), 0.0);
-    float d = NoH * NoH * (a2 - 1.0) + 1.0;
-    float D = a2 / (PI * d * d);
-    float smith = NoL * sqrt(NoV * NoV * (1.0 - a2) + a2) + NoV * sqrt(NoL * NoL * (1.0 - a2) + a2);
-    float c = 1.0 - max(dot(v, h), 0.0), c2 = c * c;
-    return D * 0.5 / max(smith, 1e-4) * (f0 + (1.0 - f0) * c2 * c2 * c);
+// Beckmann's lobe as a spherical Gaussian (Wang et al. 2009); the normal distribution D.
+float gaussian_lobe(float n_dot_h, float roughness) {
+    float m = roughness * roughness, m2 = m * m;
+    return exp2(2.885390 * (n_dot_h - 1.0) / m2) / (PI * m2);
+}
+
+// Schlick 1994.
+float schlick(float cosine, float f0) {
+    float c = 1.0 - cosine, c2 = c * c;
+    return f0 + (1.0 - f0) * c2 * c2 * c;
 }
 
 // Share of smooth surroundings that a rough dielectric mirrors (fit after Karis 2014).

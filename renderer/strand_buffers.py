@@ -1,0 +1,58 @@
+"""Hairs on the GPU: every strand a ribbon that turns its face to the camera."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+
+from renderer.lashes import Strands
+from renderer.makehuman import Floats, Indices
+from renderer.program import Program
+
+LAYOUT = ("3f 3f 4f 3f", ["in_position", "in_tangent", "in_ribbon", "in_colour"])
+
+
+class StrandMesh:
+    """Ribbons of one kind of hair: lashes, brows or scalp hair."""
+
+    def __init__(self, gl: moderngl.Context, strands: Strands, rng: np.random.Generator) -> None:
+        """``rng`` gives each strand the number by which distant views thin the hair out."""
+        rows, triangles = ribbons(strands, rng)
+        self._gl = gl
+        self._vertices = gl.buffer(rows.astype(np.float32).tobytes())
+        self._index = gl.buffer(triangles.astype(np.int32).tobytes())
+        self._array: moderngl.VertexArray | None = None
+        points = strands.points_mm.reshape(-1, 3)
+        self.centre_mm: Floats = (points.min(axis=0) + points.max(axis=0)) / 2
+        self.radius_mm = float(np.linalg.norm(points - self.centre_mm, axis=1).max())
+
+    def draw(self, program: Program) -> None:
+        """Draw all ribbons; a mesh belongs to one program."""
+        if self._array is None:
+            self._array = self._gl.vertex_array(
+                program.gl_program, [(self._vertices, LAYOUT[0], *LAYOUT[1])], self._index
+            )
+        self._array.render()
+
+
+def ribbons(strands: Strands, rng: np.random.Generator) -> tuple[Floats, Indices]:
+    """Return vertex rows (n, 13) in the order of LAYOUT and triangles (m, 3).
+
+    ``in_ribbon``: side -1 or 1, half width at the root in mm, place along the strand 0 to 1, thinning number.
+    """
+    count, points, _ = strands.points_mm.shape
+    tangent = np.gradient(strands.points_mm, axis=1)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=2, keepdims=True), 1e-9)
+    along = np.broadcast_to(np.linspace(0, 1, points), (count, points))
+    half = np.broadcast_to(0.5 * strands.width_mm[:, None], (count, points))
+    number = np.broadcast_to(rng.uniform(0, 1, (count, 1)), (count, points))
+    colour = np.broadcast_to(strands.colour[:, None], (count, points, 3))
+    sides = []
+    for side in (-1.0, 1.0):
+        ribbon = np.stack([np.full((count, points), side), half, along, number], axis=-1)
+        sides.append(np.concatenate([strands.points_mm, tangent, ribbon, colour], axis=-1))
+    rows = np.stack(sides, axis=2).reshape(-1, 13)
+    strand, step = np.meshgrid(np.arange(count), np.arange(points - 1), indexing="ij")
+    first = (strand * points + step).ravel() * 2
+    quads = np.stack([first, first + 1, first + 3, first + 2], axis=1)
+    return rows, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
