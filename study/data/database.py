@@ -16,9 +16,10 @@ from typing import Any, Final
 
 from alembic import command
 from alembic.config import Config
+from alembic.util import CommandError
 from sqlalchemy import Engine, create_engine, event, make_url, text
 from sqlalchemy.engine import URL, Connection
-from sqlalchemy.exc import ArgumentError
+from sqlalchemy.exc import ArgumentError, DBAPIError
 from sqlalchemy.orm import Session
 
 Clock = Callable[[], datetime]
@@ -88,8 +89,19 @@ def open_database(url: str, *, clock: Clock = utc_now) -> Database:
     ``url`` is SQLAlchemy's ("sqlite:///study.sqlite3", "postgresql+psycopg://...") or the path of
     an SQLite file. Raises DatabaseError saying what is wrong with it.
     """
-    engine = _engine(_url(url))
-    _migrate(engine)
+    parsed = _url(url)
+    name = parsed.render_as_string(hide_password=True)
+    try:
+        engine = _engine(parsed)
+        _migrate(engine)
+    except DBAPIError as error:
+        raise DatabaseError(f"{name}: cannot be opened ({error.orig})") from None
+    except CommandError as error:
+        raise DatabaseError(
+            f"{name}: its tables were made by another version of Ocularist ({error})"
+        ) from None
+    except ArgumentError as error:
+        raise DatabaseError(f"{name}: not a database that can be used ({error})") from None
     return Database(engine, clock=clock)
 
 
@@ -98,7 +110,7 @@ def _url(text_: str) -> URL:
         return URL.create("sqlite", database=text_)
     try:
         return make_url(text_)
-    except ArgumentError as error:
+    except (ArgumentError, ValueError) as error:
         raise DatabaseError(f"{text_}: not a database URL ({error})") from None
 
 
@@ -108,8 +120,8 @@ def _engine(url: URL) -> Engine:
             return create_engine(url, pool_pre_ping=True)
         except ModuleNotFoundError as error:
             raise DatabaseError(
-                f"{url.render_as_string()}: the driver {error.name} is not installed; "
-                f"install it, or use another driver: postgresql+psycopg://..."
+                f"{url}: the driver {error.name} is not installed; install it, or name another "
+                "one: postgresql+psycopg://..."
             ) from None
     if not url.database or url.database == ":memory:":
         raise DatabaseError(f"{url}: an SQLite database has to be a file: sqlite:///study.sqlite3")
