@@ -35,16 +35,18 @@ CHARTS: Final = (
     Chart(
         "realism-per-clip",
         "Perceived realism of each eye in each clip, grouped by viewing distance and coloured by "
-        f"level of detail (LoD). {_INTERVAL} Dots are single people, n is their number. Left and "
-        "right are the viewer's. (The thesis's Figure 5.2, with its uncertainty.)",
+        f"level of detail (LoD). {_INTERVAL} Dots are single people (in larger studies "
+        "the area of a dot is their share), n is their number. Left and right are the viewer's. "
+        "(The thesis's Figure 5.2, with its uncertainty.)",
         realism_per_clip,
         lambda t: mean_ratings(t.ratings, ["distance", "clip", "eye", "lod"]),
     ),
     Chart(
         "perceived-against-actual",
         f"Perceived realism against the actual LoD at each distance. {_INTERVAL} Grey lines are "
-        "single people. τ is Kendall's tau-b within people, averaged on Fisher's z scale, with its "
-        "95 % interval; people whose ratings are all alike have none.",
+        "single people (where they are at most 100). τ is Kendall's tau-b within people, averaged "
+        "on Fisher's z scale, with its 95 % interval; people whose ratings are all alike have "
+        "none.",
         trend_charts.perceived_against_actual,
         lambda t: rank_correlations(t.ratings),
     ),

@@ -35,6 +35,7 @@ TITLE: Final = "Perceived realism of each eye, per clip"
 _CLIPS_PER_ROW: Final = 10
 _SLOT_IN: Final = 0.6  # width of one eye's column
 _GAP: Final = 0.5  # between clips, in columns
+_MOST_DOTS: Final = 80  # with more people the area of one dot per rating shows their share
 _KEYS: Final = ["distance", "clip", "eye", "lod"]
 
 
@@ -122,16 +123,15 @@ def _ratings_of(row: dict[str, Any], people: pd.DataFrame) -> np.ndarray:
 def _draw_eye(
     axes: Axes, x: float, row: dict[str, Any], ratings: np.ndarray, lods: Sequence[str]
 ) -> None:
-    sideways = beeswarm(ratings, step=min(0.1, 0.8 / ratings.size))
-    axes.scatter(
-        x + sideways,
-        ratings,
-        s=9,
-        color=lod_colour(row["lod"], lods),
-        alpha=0.5,
-        linewidths=0,
-        zorder=2,
-    )
+    colour = lod_colour(row["lod"], lods)
+    if ratings.size <= _MOST_DOTS:
+        sideways = beeswarm(ratings, step=min(0.1, 0.8 / ratings.size))
+        axes.scatter(x + sideways, ratings, s=9, color=colour, alpha=0.5, linewidths=0, zorder=2)
+    else:
+        values, counts = np.unique(np.round(ratings), return_counts=True)
+        size = 260 * counts / ratings.size
+        axes.scatter(np.full(values.size, x), values, s=size, color=colour, alpha=0.35,
+                     linewidths=0, zorder=2)  # fmt: skip
     draw_mean(axes, x, row, lods=lods)
     axes.annotate(
         f"n = {row['people']}",

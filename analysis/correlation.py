@@ -13,8 +13,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ndtri
-from scipy.stats import t as student_t
+from scipy.special import ndtri, stdtrit
 
 from analysis.descriptive import CONFIDENCE, answered, t_interval
 from analysis.ordering import distance_order
@@ -125,7 +124,7 @@ def mean_tau(tau: ArrayLike, untied: ArrayLike) -> tuple[float, float, float]:
         return (float(np.tanh(mean)), np.nan, np.nan)
     n = t.size
     error = np.sqrt((residual**2).sum() * n / (n - 1)) / m.sum()
-    half = student_t.ppf(0.5 + CONFIDENCE / 2, n - 1) * error
+    half = stdtrit(n - 1, 0.5 + CONFIDENCE / 2) * error
     low, high = np.tanh([mean - half, mean + half])
     return (float(np.tanh(mean)), float(low), float(high))
 

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from analysis.ordering import in_order
 
@@ -30,7 +30,7 @@ def t_interval(values: ArrayLike, *, confidence: float = CONFIDENCE) -> tuple[fl
     n = x.size
     if n < 2 or np.ptp(x) == 0:
         return (np.nan, np.nan)
-    half = student_t.ppf(0.5 + confidence / 2, n - 1) * x.std(ddof=1) / np.sqrt(n)
+    half = stdtrit(n - 1, 0.5 + confidence / 2) * x.std(ddof=1) / np.sqrt(n)
     return (float(x.mean() - half), float(x.mean() + half))
 
 
@@ -86,21 +86,24 @@ def rating_counts(
 def differences_from_best(ratings: pd.DataFrame) -> pd.DataFrame:
     """Compare, within people and per distance, the highest LoD shown there with each other one.
 
-    Columns: distance, best, lod, people (who rated both), difference (best minus lod), low, high.
-    LoDs without a rank have no best and are left out.
+    Columns: distance, best, lod, is_ranked, people (who rated both), difference (best minus lod),
+    low, high. A LoD without a rank is compared too but is never the best; a distance without any
+    ranked LoD is left out.
     """
-    ranked = ratings[ratings["lod_rank"].notna()]
-    people = person_means(ranked, ["distance", "lod", "lod_rank"])
+    people = person_means(ratings, ["distance", "lod", "lod_rank"])
     rows = []
     for distance, group in people.groupby("distance", sort=False):
         wide = group.pivot(index="participant", columns="lod", values="rating")
         ranks = group.drop_duplicates("lod").set_index("lod")["lod_rank"].sort_values()
-        best = ranks.index[-1]
-        for lod in ranks.index[-2::-1]:
+        if ranks.isna().all():
+            continue
+        best = ranks.dropna().index[-1]
+        for lod in ranks.index.drop(best):
             gap = (wide[best] - wide[lod]).dropna().to_numpy(dtype=float)
             low, high = t_interval(gap)
-            row = {"distance": distance, "best": best, "lod": lod, "people": gap.size}
+            row = {"distance": distance, "best": best, "lod": lod}
+            row |= {"is_ranked": bool(pd.notna(ranks[lod])), "people": gap.size}
             row |= {"difference": gap.mean() if gap.size else np.nan, "low": low, "high": high}
             rows.append(row)
-    columns = ["distance", "best", "lod", "people", "difference", "low", "high"]
+    columns = ["distance", "best", "lod", "is_ranked", "people", "difference", "low", "high"]
     return in_order(pd.DataFrame(rows, columns=columns), ratings)

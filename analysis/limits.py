@@ -7,19 +7,14 @@ import pandas as pd
 from analysis.audit import Audit
 from analysis.descriptive import answered, differences_from_best
 from analysis.reading import Tables
-from analysis.wording import counted, number
+from analysis.wording import number
 
 
 def limits(tables: Tables, audit: Audit) -> list[str]:
     """Return every limit of design and data that a reader of the answer must know."""
-    rated = answered(tables.ratings)
-    if rated.empty:
-        asked = len(tables.ratings)
-        reason = (
-            f"All {counted(asked, 'rating is', 'ratings are')} missing"
-            if asked
-            else ("There are no ratings yet")
-        )
+    if answered(tables.ratings).empty:
+        asked = int((~tables.ratings["is_practice"]).sum())
+        reason = "All ratings are missing" if asked else "There are no ratings yet"
         return [f"{reason}, so nothing can be said about realism.", *audit.limits()]
     text = []
     if tables.is_simulated:

@@ -45,9 +45,9 @@ class Summary:
 
     def lines(self) -> list[str]:
         """Return the answer as lines of plain text for a terminal."""
-        lines = [SIMULATED] if self.is_simulated else []
-        lines += [f"{finding.distance}: {finding.sentence}" for finding in self.findings]
-        return lines or list(self.limits[:1])
+        answer = [f"{finding.distance}: {finding.sentence}" for finding in self.findings]
+        label = [SIMULATED] if self.is_simulated else []
+        return [*label, *(answer if self.ratings else self.limits[:1])]
 
 
 def analyse(tables: Tables, out: str | Path, *, bench: str | Path | None = None) -> Summary:

@@ -11,6 +11,7 @@ import pandas as pd
 
 from analysis.descriptive import answered
 from analysis.reading import Tables
+from analysis.wording import percent
 
 _QUESTIONS: Final = (
     ("ratings", "rating", "realism of each eye"),
@@ -65,19 +66,19 @@ def quality_statements(tables: Tables) -> list[str]:
     text = list(tables.notes)
     practice = int(ratings["is_practice"].sum())
     if practice:
-        text.append(f"{practice} ratings of practice trials are not counted.")
+        text.append(f"Ratings of practice trials, not counted: {practice}.")
     counted = ratings[~ratings["is_practice"]]
     missing = int(counted["rating"].isna().sum())
     if missing:
         text.append(
-            f"{missing} of {len(counted)} ratings are missing ({missing / len(counted):.1%}); "
-            "they are left out, not replaced."
+            f"Missing ratings, left out and not replaced: {missing} of {len(counted)} "
+            f"({percent(missing / len(counted))})."
         )
     uncertified = int((counted["certified"] == False).fillna(False).sum())  # noqa: E712 - nullable
     if uncertified:
         text.append(
-            f"{uncertified} ratings belong to presentations that failed the study's rule; they are "
-            "kept and counted."
+            f"Ratings of presentations that failed the study's rule, kept and counted: "
+            f"{uncertified}."
         )
     text += _versions(counted)
     text += _use_of_scale(people_overview(tables), tables.scale)
@@ -97,11 +98,9 @@ def _use_of_scale(people: pd.DataFrame, scale: tuple[int, int]) -> list[str]:
     total, highest = int(people["ratings"].sum()), int(people["highest"].sum())
     if not total:
         return []
-    text = f"{highest} of {total} ratings are the highest ({scale[1]})"
+    text = f"The highest rating ({scale[1]}) was given {highest} times in {total}"
     if highest > 1:
-        most = int(people["highest"].max())
-        text += f", at most {most} of them from one person" if most < highest else ", all from one"
-        text += " person" if most == highest else ""
+        text += f", at most {int(people['highest'].max())} times by one person"
     alike = people.loc[(people["ratings"] > 2) & (people["distinct"] == 1), "participant"]
     found = [text + "."]
     if len(alike):

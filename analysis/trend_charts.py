@@ -31,6 +31,7 @@ AGAINST_LOD: Final = "Perceived against actual level of detail"
 BY_DISTANCE: Final = "Perceived realism by viewing distance"
 NO_RANKS: Final = "The LoDs have no rank, so there is no order to compare ratings with."
 _PANELS_PER_ROW: Final = 4
+_MOST_LINES: Final = 100
 
 
 def perceived_against_actual(tables: Tables) -> Figure:
@@ -48,7 +49,10 @@ def perceived_against_actual(tables: Tables) -> Figure:
     figure, panels = _panels(AGAINST_LOD, len(distances), tables)
     for number_of_panel, (axes, distance) in enumerate(zip(panels, distances, strict=True)):
         tidy(axes)
-        for _, line in people[people["distance"] == distance].groupby("participant", sort=False):
+        own = people[people["distance"] == distance]
+        if own["participant"].nunique() > _MOST_LINES:
+            own = own.iloc[:0]
+        for _, line in own.groupby("participant", sort=False):
             at = line["lod"].map(place).sort_values()
             axes.plot(at, line.loc[at.index, "rating"], color=FAINT, linewidth=0.9, zorder=1)
         rows = records(means[means["distance"] == distance])
