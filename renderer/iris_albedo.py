@@ -30,7 +30,7 @@ def build_albedo(
     """Return the linear diffuse albedo (n, n, 3) of a relief in one colour family."""
     planes = _gradient(srgb_to_linear(look.stops), colour_position(plane, relief))
     _towards(planes, srgb_to_linear(look.core), core_share(plane, relief, look, seed))
-    lift = _lightness(relief, look)
+    lift = _lightness(relief, look) + _ridge_light(plane, relief)
     planes *= _balanced_gain(plane, lift)
     _pale_crests(planes, lift, look)
     _wander(planes, plane.size_px)
@@ -90,6 +90,15 @@ def _lightness(relief: Relief, look: Family) -> Field:
     lift *= f(look.contrast)
     lift += f(0.05) * relief.streaks + f(0.10) * relief.patches
     return np.clip(lift, f(-1.8), f(1.2))
+
+
+def _ridge_light(plane: Plane, relief: Relief) -> Field:
+    """Return the lift of the collarette: paler than both zones, and darker just inside it."""
+    beyond = plane.radius_mm - plane.collarette_mm
+    crest = np.exp(-(((beyond - np.float32(0.02)) / np.float32(0.14)) ** 2))
+    moat = np.exp(-(((beyond + np.float32(0.30)) / np.float32(0.16)) ** 2))
+    broken = np.clip(np.float32(0.7) + np.float32(0.5) * relief.patches, 0.0, 1.4)
+    return np.asarray((np.float32(0.20) * crest - np.float32(0.12) * moat) * broken)
 
 
 def _balanced_gain(plane: Plane, lift: Field) -> Field:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from renderer.iris_layout import IrisLayout, over_angle
-from renderer.iris_runs import STEP_MM, lay_runs, polar_tubes, taper
+from renderer.iris_runs import lay_runs, polar_tubes, taper
 from renderer.noise import noise_1d
 from renderer.tubes import Tubes
 
 
-def pupillary_tubes(layout: IrisLayout, seed: int) -> Tubes:
+def pupillary_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
     """Return the fine straight strands between ruff and collarette."""
     rng = np.random.Generator(np.random.PCG64([seed, 0x9A]))
     count, key = 2200, seed * 16 + 9
@@ -24,7 +24,7 @@ def pupillary_tubes(layout: IrisLayout, seed: int) -> Tubes:
     )
     stop = np.minimum(stop, outer + 0.03)
     start = np.minimum(start, stop - 0.1)
-    runs = lay_runs(start.astype(np.float32), stop.astype(np.float32), step=STEP_MM)
+    runs = lay_runs(start.astype(np.float32), stop.astype(np.float32), step=step_mm)
     run, radius = runs.run, runs.at
     span = np.clip((radius - inner[run]) / (outer - inner)[run], 0.0, 1.0)
     offset = 0.022 * span * noise_1d(run // 5, radius / np.float32(0.40), key + 11)
@@ -43,14 +43,14 @@ def pupillary_tubes(layout: IrisLayout, seed: int) -> Tubes:
     )
 
 
-def collarette_tubes(layout: IrisLayout, seed: int) -> Tubes:
+def collarette_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
     """Return the collarette: broken cords that follow the zigzag and weave about it."""
     rng = np.random.Generator(np.random.PCG64([seed, 0xC0]))
     count, key = 230, seed * 16 + 10
     span = np.clip(rng.exponential(0.10, count), 0.05, 0.5)
     first = rng.uniform(0, 2 * np.pi, count)
     # These runs go along the angle; the ring's radius of about 3.4 mm turns it into lengths.
-    runs = lay_runs(first.astype(np.float32), (first + span).astype(np.float32), step=STEP_MM / 3.6)
+    runs = lay_runs(first.astype(np.float32), (first + span).astype(np.float32), step=step_mm / 3.6)
     run, angle = runs.run, runs.at
     shift = rng.normal(0.0, 0.080, count).astype(np.float32)[run]
     shift += 0.045 * noise_1d(run // 3, angle / np.float32(0.10), key + 11)

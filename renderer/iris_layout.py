@@ -136,12 +136,15 @@ def _collarette(rng: np.random.Generator, cusps: Array, seed: int) -> Array:
 
 
 def _crypts(rng: np.random.Generator, cusps: Array, collarette: Array, crypt_rate: float) -> Crypts:
-    """10 to 25 lenses of 0.015 to 0.3 mm2 hugging the collarette, then small ones at the root."""
-    hugging = round(int(rng.integers(9, 18)) * crypt_rate)
-    free = round(int(rng.integers(3, 8)) * crypt_rate)
+    """Lenses of 0.02 to 0.3 mm2, most hugging the collarette, then small ones at the root.
+
+    10 to 25 is the mean iris's count; some have nearly none, so the count itself is drawn widely.
+    """
+    hugging = round(int(rng.integers(4, 16)) * crypt_rate)
+    free = round(int(rng.integers(1, 8)) * crypt_rate)
     marginal = round(int(rng.integers(14, 34)) * crypt_rate)
     area = np.exp(rng.uniform(np.log(0.02), np.log(0.30), hugging + free))
-    slender = rng.uniform(1.3, 2.6, hugging + free)
+    slender = rng.uniform(1.1, 3.4, hugging + free)
     # A lens of half axes a and b has the area 8 a b / 3 (parabolic sides).
     half_width = np.sqrt(area * 3.0 / 8.0 / slender)
     half_length = half_width * slender
@@ -149,9 +152,9 @@ def _crypts(rng: np.random.Generator, cusps: Array, collarette: Array, crypt_rat
     ordered = np.sort(cusps)
     widths = np.mod(np.roll(ordered, -1) - ordered, 2.0 * np.pi)
     arc = rng.permutation(cusps.size)[np.arange(hugging) % cusps.size]
-    angle = ordered[arc] + widths[arc] * rng.uniform(0.35, 0.65, hugging)
+    angle = ordered[arc] + widths[arc] * rng.uniform(0.2, 0.8, hugging)
     inner = over_angle(collarette, angle.astype(np.float32))
-    radius = inner + half_length[:hugging] * 0.85 + rng.uniform(0.0, 0.12, hugging)
+    radius = inner + half_length[:hugging] * 0.85 + rng.exponential(0.12, hugging)
     free_radius = rng.uniform(3.9, 5.0, free)
     small = rng.uniform(0.03, 0.085, marginal)
     return Crypts(

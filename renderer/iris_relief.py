@@ -49,14 +49,22 @@ def _macro_height(plane: Plane) -> Field:
     hump = np.exp(-((beyond / np.float32(0.32)) ** 2))
     outer = smoothstep(0.0, 2.4, beyond)
     inner = smoothstep(0.0, -1.4, beyond)
-    height = np.float32(0.18) * hump - np.float32(0.16) * outer - np.float32(0.06) * inner
+    ridge = np.exp(-((beyond / np.float32(0.13)) ** 2))
+    height = (
+        np.float32(0.14) * hump
+        + np.float32(0.06) * ridge
+        - np.float32(0.16) * outer
+        - np.float32(0.06) * inner
+    )
     return np.asarray(height)
 
 
 def build_relief(plane: Plane, layout: IrisLayout, seed: int, *, veil: float) -> Relief:
     """Draw the fibres and shape them into the relief; ``veil`` covers them with a sheet."""
     n = plane.size_px
-    fibres, tone = draw_tubes(iris_tubes(layout, seed), n, half_size_mm=HALF_SIZE_MM)
+    # Points closer than a texel, also where a strand runs slantwise to the radius.
+    strands = iris_tubes(layout, seed, step_mm=1.2 * HALF_SIZE_MM / n)
+    fibres, tone = draw_tubes(strands, n, half_size_mm=HALF_SIZE_MM)
     key = seed * 64
     streaks = sample_polar(
         polar_noise(512, 2048, cells=(9.0, 420), seed=key + 1)

@@ -6,7 +6,6 @@ A run goes from one radius to another; every array over points is flat, one run 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -14,8 +13,6 @@ import numpy.typing as npt
 from renderer.iris_layout import IRIS_RADIUS_MM, Array, IrisLayout, angle_between, over_angle
 from renderer.noise import Field, polar_noise, sample_polar
 from renderer.tubes import Tubes
-
-STEP_MM: Final = 0.0036
 
 
 @dataclass(frozen=True)
@@ -79,7 +76,7 @@ def bend_with_flow(layout: IrisLayout, angle: Field, radius: Field, seed: int) -
     to_left = angle_between(ordered[right - 1], angle)
     nearest = np.where(np.abs(to_right) < np.abs(to_left), to_right, to_left)
     ring = over_angle(layout.collarette_mm, angle)
-    pull = 0.30 * np.exp(-(((radius - ring - 0.08) / 0.40) ** 2))
+    pull = 0.24 * np.exp(-(((radius - ring - 0.08) / 0.40) ** 2))
     return np.asarray(angle + nearest * pull, np.float32)
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from renderer.iris_inner_strands import collarette_tubes, pupillary_tubes
 from renderer.iris_layout import IRIS_RADIUS_MM, Array, IrisLayout, over_angle
 from renderer.iris_runs import (
-    STEP_MM,
     Runs,
     bend_with_flow,
     lay_runs,
@@ -60,7 +59,7 @@ DECKS: Final = (
 )
 
 
-def ciliary_tubes(layout: IrisLayout, seed: int, index: int) -> Tubes:
+def ciliary_tubes(layout: IrisLayout, seed: int, *, index: int, step_mm: float) -> Tubes:
     """Return the deck DECKS[index] of the ciliary zone."""
     deck = DECKS[index]
     key = seed * 16 + index
@@ -69,7 +68,7 @@ def ciliary_tubes(layout: IrisLayout, seed: int, index: int) -> Tubes:
     guide = rng.integers(0, guides, deck.count) if deck.guides else np.arange(deck.count)
     guide_angle = (np.arange(guides) + rng.uniform(-0.55, 0.55, guides)) / guides * 2.0 * np.pi
     inner = over_angle(layout.collarette_mm, guide_angle.astype(np.float32))[guide]
-    runs = _ciliary_runs(deck, inner, rng)
+    runs = _ciliary_runs(deck, inner, rng, step_mm=step_mm)
     owner, radius = guide[runs.run], runs.at
     beyond = np.maximum(radius - inner[runs.run], 0.0)
     offset = _bundle_offset(deck, runs, owner, beyond=beyond, key=key, rng=rng)
@@ -98,7 +97,7 @@ def ciliary_tubes(layout: IrisLayout, seed: int, index: int) -> Tubes:
     )
 
 
-def _ciliary_runs(deck: Deck, inner: Array, rng: np.random.Generator) -> Runs:
+def _ciliary_runs(deck: Deck, inner: Array, rng: np.random.Generator, *, step_mm: float) -> Runs:
     """Lay whole runs from the collarette outwards and free runs anywhere beyond it."""
     whole = rng.random(deck.count) < deck.whole
     run_mm = np.clip(rng.exponential(deck.run_mm, deck.count), 0.25, 3.0)
@@ -108,7 +107,7 @@ def _ciliary_runs(deck: Deck, inner: Array, rng: np.random.Generator) -> Runs:
     stop = np.where(whole, rng.uniform(4.7, IRIS_RADIUS_MM, deck.count), free + run_mm)
     stop = np.minimum(stop, IRIS_RADIUS_MM + 0.02)
     start = np.minimum(start, stop - 0.1)
-    return lay_runs(start.astype(np.float32), stop.astype(np.float32), step=STEP_MM)
+    return lay_runs(start.astype(np.float32), stop.astype(np.float32), step=step_mm)
 
 
 def _bundle_offset(
@@ -130,7 +129,10 @@ def _bundle_offset(
     return np.asarray(offset, np.float32)
 
 
-def iris_tubes(layout: IrisLayout, seed: int) -> Tubes:
-    """Return every fibre of the iris."""
-    decks = [ciliary_tubes(layout, seed, index) for index in range(len(DECKS))]
-    return join_tubes([*decks, pupillary_tubes(layout, seed), collarette_tubes(layout, seed)])
+def iris_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
+    """Return every fibre of the iris with points at most ``step_mm`` apart along the radius."""
+    decks = [
+        ciliary_tubes(layout, seed, index=index, step_mm=step_mm) for index in range(len(DECKS))
+    ]
+    pupillary = pupillary_tubes(layout, seed, step_mm=step_mm)
+    return join_tubes([*decks, pupillary, collarette_tubes(layout, seed, step_mm=step_mm)])
