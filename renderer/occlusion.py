@@ -1,95 +1,75 @@
-"""From which directions the open sky reaches a point: depth maps of the head from all around."""
+"""How much light reaches each vertex of a figure past the figure itself. Pure numpy.
+
+For each direction of light the surface is splatted into a coarse depth grid: right to about the
+grid's cell, which is enough for vertex values.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Final
 
-import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.makehuman import Floats
-from renderer.sun_shadow import orthographic
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
 
-DIRECTIONS: Final = 48
-MAP_PX: Final = 384
-DEPTH_MM: Final = 1500.0
-
-Draw = Callable[[Floats], None]
-Visible = npt.NDArray[np.float32]
+_CELL_MM: Final = 14.0
+_BIAS_MM: Final = 32.0  # nearer than this, a surface does not shade itself
 
 
-def directions(count: int = DIRECTIONS) -> Floats:
-    """Return (count, 3) unit vectors evenly over the sphere (Fibonacci's spiral)."""
-    i = np.arange(count) + 0.5
-    y = 1 - 2 * i / count
-    angle = np.pi * (1 + 5**0.5) * i
+def visibility(positions_mm: Floats, triangles: Indices, *, directions: Floats) -> Floats:
+    """Return (n, d): 1 where a vertex sees out along a unit direction towards the light, else 0."""
+    points = _surface_points(positions_mm, triangles)
+    seen = np.empty((len(positions_mm), len(directions)))
+    for column, direction in enumerate(directions):
+        helper = np.eye(3)[int(np.argmin(np.abs(direction)))]
+        across = np.cross(direction, helper)
+        across /= np.linalg.norm(across)
+        frame = np.stack([across, np.cross(direction, across)], axis=1) / _CELL_MM
+        low = np.floor((points @ frame).min(axis=0)) - 1
+        cells = np.floor(points @ frame - low).astype(np.int64)
+        width = int(cells[:, 1].max()) + 2
+        nearest = np.full((int(cells[:, 0].max()) + 2) * width, -np.inf)
+        np.maximum.at(nearest, cells[:, 0] * width + cells[:, 1], points @ direction)
+        own = np.floor(positions_mm @ frame - low).astype(np.int64)
+        depth = positions_mm @ direction
+        seen[:, column] = depth > nearest[own[:, 0] * width + own[:, 1]] - _BIAS_MM
+    return seen
+
+
+def openness(positions_mm: Floats, normals: Floats, *, triangles: Indices, count: int) -> Floats:
+    """Return each vertex's cosine-weighted share (n,) of open directions, of ``count`` in all."""
+    directions = sphere_directions(count)
+    cosine = np.clip(normals @ directions.T, 0.0, None)
+    seen = visibility(positions_mm, triangles, directions=directions)
+    return np.asarray((cosine * seen).sum(axis=1) / np.maximum(cosine.sum(axis=1), 1e-9))
+
+
+def sphere_directions(count: int) -> Floats:
+    """Return unit directions (count, 3) spread evenly over the sphere on a spiral."""
+    y = 1 - (np.arange(count) + 0.5) * 2 / count
+    turn = np.arange(count) * 2.39996323  # the golden angle
     ring = np.sqrt(1 - y * y)
-    return np.column_stack([ring * np.cos(angle), y, ring * np.sin(angle)])
+    return np.stack([ring * np.cos(turn), y, ring * np.sin(turn)], axis=1)
 
 
-class DepthProbe:
-    """Draws depth maps and looks points up in them."""
-
-    def __init__(self, gl: moderngl.Context, size_px: int = MAP_PX) -> None:
-        self.gl = gl
-        self._texture = gl.depth_texture((size_px, size_px))
-        self._framebuffer = gl.framebuffer(depth_attachment=self._texture)
-        self._size = size_px
-
-    def depth(self, matrix: Floats, draw: Draw) -> Visible:
-        """Return the depth map (size, size) float32, 0 near to 1 far, rows from below."""
-        self._framebuffer.use()
-        self._framebuffer.clear(depth=1.0)
-        self.gl.enable_only(moderngl.DEPTH_TEST)
-        draw(matrix)
-        return np.frombuffer(self._texture.read(), dtype=np.float32).reshape(self._size, self._size)
-
-    def release(self) -> None:
-        """Give the maps back."""
-        self._framebuffer.release()
-        self._texture.release()
+def cone_directions(axis: Floats, *, angle_rad: float) -> Floats:
+    """Return a direction and six around it: a small, soft source of light."""
+    helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    across = np.cross(axis, helper)
+    across /= np.linalg.norm(across)
+    other = np.cross(axis, across)
+    turn = np.arange(6) * np.pi / 3
+    around = axis + np.tan(angle_rad) * (
+        np.cos(turn)[:, None] * across + np.sin(turn)[:, None] * other
+    )
+    found = np.concatenate([axis[None], around])
+    return np.asarray(found / np.linalg.norm(found, axis=1, keepdims=True))
 
 
-def look_up(depth: Visible, matrix: Floats, points_mm: Floats, *, radius_px: int = 1) -> Visible:
-    """Return the share (n,) of the (2 r + 1)^2 texels around each point that do not cover it."""
-    clip = points_mm @ matrix[:3, :3].T + matrix[:3, 3]
-    size = depth.shape[0]
-    place = (clip[:, :2] * 0.5 + 0.5) * size - 0.5
-    column, row = np.rint(place).astype(int).T
-    far = clip[:, 2] * 0.5 + 0.5
-    total = np.zeros(len(points_mm), dtype=np.float32)
-    steps = range(-radius_px, radius_px + 1)
-    for dy in steps:
-        rows = np.clip(row + dy, 0, size - 1)
-        for dx in steps:
-            total += far <= depth[rows, np.clip(column + dx, 0, size - 1)]
-    return total / (2 * radius_px + 1) ** 2
-
-
-def sky_visibility(
-    gl: moderngl.Context,
-    draw: Draw,
-    regions: list[tuple[Floats, Floats, tuple[float, float, float], float]],
-) -> list[Visible]:
-    """Return for each region (points, normals, centre_mm, half_mm) its (n, DIRECTIONS) visibility.
-
-    Directions behind the surface count as closed. Points are lifted off their surface by a texel.
-    """
-    probe = DepthProbe(gl)
-    results = [np.zeros((len(points), DIRECTIONS), dtype=np.float32) for points, *_ in regions]
-    for number, direction in enumerate(directions()):
-        for (points, normals, centre, half_mm), result in zip(regions, results, strict=True):
-            matrix = orthographic(direction, centre, half_mm=half_mm, depth_mm=DEPTH_MM)
-            texel = 2 * half_mm / MAP_PX
-            facing = normals @ direction
-            open_to = facing > 0.0
-            slope = np.sqrt(1 - np.clip(facing[open_to], 0.05, 1) ** 2) / np.clip(
-                facing[open_to], 0.2, 1
-            )
-            lift = normals[open_to] * texel + np.outer(texel * (0.8 + 1.2 * slope), direction)
-            depth = probe.depth(matrix, draw)
-            result[open_to, number] = look_up(depth, matrix, points[open_to] + lift)
-    probe.release()
-    return results
+def _surface_points(positions: Floats, triangles: Indices) -> Floats:
+    """Return points spread over the triangles closely enough for the grid's cells."""
+    shares = np.array([[a / 5, b / 5, 1 - (a + b) / 5] for a in range(6) for b in range(6 - a)])
+    corners = positions[triangles]
+    return np.asarray(np.einsum("sk,tkc->tsc", shares, corners).reshape(-1, 3))
