@@ -98,7 +98,7 @@ def _compare(
             break
         passed.append(gap)
     rest = ranked[len(passed) :]
-    parts = [_verdict(best, passed, rest), _undecided(rest)]
+    parts = [_verdict(best, passed, rest), _undecided(best, rest)]
     if passed:
         parts += [_losses(best, rest), _notice(passed[-1].lod, best, noticed)]
     parts.append(_unranked(best, [gap for gap in measured if not gap.is_ranked]))
@@ -129,13 +129,17 @@ def _verdict(best: str, passed: Sequence[_Gap], rest: Sequence[_Gap]) -> str:
     return _losses(best, rest)
 
 
-def _undecided(rest: Sequence[_Gap]) -> str:
+def _undecided(best: str, rest: Sequence[_Gap]) -> str:
     """Name the LoDs that were neither shown to be lower nor known well enough to pass."""
     unsure = [gap for gap in rest if not gap.is_loss]
-    if not unsure:
-        return ""
-    stated = listed([f"{gap.lod} ({gap.certainty})" for gap in unsure])
-    return f"too little is known about {stated}"
+    return f"too little is known about {listed(_stated(best, unsure))}" if unsure else ""
+
+
+def _stated(best: str, gaps: Sequence[_Gap]) -> list[str]:
+    return [
+        f"{gap.lod} ({best} − {gap.lod} = {number(gap.difference)} points, {gap.certainty})"
+        for gap in gaps
+    ]
 
 
 def _losses(best: str, gaps: Sequence[_Gap]) -> str:
@@ -148,9 +152,7 @@ def _loss(gap: _Gap) -> str:
 
 
 def _unranked(best: str, gaps: Sequence[_Gap]) -> str:
-    return listed(
-        [f"{best} − {gap.lod} = {number(gap.difference)} points ({gap.certainty})" for gap in gaps]
-    )
+    return f"without a rank: {listed(_stated(best, gaps))}" if gaps else ""
 
 
 def _unmeasured(lods: Sequence[str]) -> str:
