@@ -146,7 +146,12 @@ def trial_answers(
         "what_differed": answer.what_differed,
         "comments": answer.comments,
     }
-    return {q.id: known[q.id] if q.id in known else _fitting(q, None, rng) for q in questions}
+    return {
+        q.id: known[q.id]
+        if q.id in known and not (q.is_required and known[q.id] is None)
+        else _fitting(q, None, rng)
+        for q in questions
+    }
 
 
 def _fitting(question: Question, known: Value | None, rng: np.random.Generator) -> Value | None:

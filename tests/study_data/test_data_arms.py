@@ -1,0 +1,180 @@
+"""Arms: the largest clips that fit and are ready, balanced by leases that run out."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+import pytest
+
+from study.data import arms, jobs, participants, progress
+from study.data.database import Database
+from study.data.studies import Study
+from study.design.definition import WantedClip
+from study.design.schedule import Arm, all_arms
+
+SMALL, LARGE = "320x180", "640x360"
+
+
+@pytest.fixture
+def wanted(db: Database, study: Study) -> list[WantedClip]:
+    clips = study.definition.wanted_specs()
+    jobs.enqueue(db, clips)
+    return clips
+
+
+def render(db: Database, number: int) -> None:
+    for _ in range(number):
+        job = jobs.claim(db, worker="w")
+        assert job is not None
+        jobs.finish(db, job, worker="w", record={})
+
+
+def test_nobody_starts_before_the_clips_of_one_arm_are_there(
+    db: Database, walk: Any, wanted: list[WantedClip]
+) -> None:
+    assert len(wanted) == 16
+    walk.to_preparing()
+    before = arms.readiness(db, walk.participant, screen=(1920, 1080))
+    assert before == arms.Readiness(fits=True, is_ready=False, progress=0.0, clips_left=4)
+    assert arms.assign(db, walk.participant) is None
+    render(db, 3)
+    assert arms.readiness(db, walk.participant, screen=None).clips_left == 1
+    assert arms.assign(db, walk.participant) is None
+    render(db, 1)
+    assert arms.readiness(db, walk.participant, screen=None).is_ready
+    leased = arms.assign(db, walk.participant)
+    assert leased is not None
+    assert (leased.size, leased.orbit_direction) == (SMALL, "rightward")
+
+
+def test_a_clip_under_way_moves_the_progress_but_is_not_ready(
+    db: Database, walk: Any, wanted: list[WantedClip]
+) -> None:
+    assert wanted
+    job = jobs.claim(db, worker="w")
+    assert job is not None
+    jobs.report(db, job, worker="w", progress=1.0)
+    found = arms.readiness(db, walk.participant, screen=None)
+    assert found.progress == pytest.approx(0.99 / 4)
+    assert found.clips_left == 4
+
+
+def test_the_largest_size_that_fits_and_is_ready_is_taken(
+    db: Database, enrol_walk: Any, wanted: list[WantedClip]
+) -> None:
+    render(db, 8)
+    first = arms.assign(db, enrol_walk(1).participant, screen=(1920, 1080))
+    render(db, len(wanted) - 8)
+    second = arms.assign(db, enrol_walk(2).participant, screen=(1920, 1080))
+    third = arms.assign(db, enrol_walk(3).participant, screen=(639, 1080))
+    assert [each and each.size for each in (first, second, third)] == [SMALL, LARGE, SMALL]
+
+
+def test_a_screen_that_is_too_small_fits_nothing(
+    db: Database, walk: Any, wanted: list[WantedClip]
+) -> None:
+    render(db, len(wanted))
+    assert not arms.readiness(db, walk.participant, screen=(319, 1000)).fits
+    assert arms.assign(db, walk.participant, screen=(319, 1000)) is None
+
+
+def test_asking_again_keeps_the_arm(db: Database, walk: Any, wanted: list[WantedClip]) -> None:
+    render(db, len(wanted))
+    first = arms.assign(db, walk.participant, screen=(1920, 1080))
+    assert first is not None
+    again = arms.assign(db, first, screen=(1920, 1080))
+    assert again is not None
+    assert (again.size, again.orbit_direction) == (first.size, first.orbit_direction)
+
+
+def test_before_the_first_trial_a_smaller_screen_gets_a_smaller_clip(
+    db: Database, walk: Any, wanted: list[WantedClip]
+) -> None:
+    render(db, len(wanted))
+    walk.to_preparing()
+    first = arms.assign(db, walk.participant, screen=(1920, 1080))
+    smaller = arms.assign(db, walk.participant, screen=(400, 400))
+    assert first is not None
+    assert smaller is not None
+    assert (first.size, smaller.size) == (LARGE, SMALL)
+    progress.begin(db, smaller, key="begin")
+    later = arms.assign(db, smaller, screen=(1920, 1080))
+    assert later is not None
+    assert later.size == SMALL
+
+
+def test_directions_are_balanced_over_people_who_come_one_by_one(
+    db: Database, study: Study, enrol_walk: Any
+) -> None:
+    for seed in range(7):
+        enrol_walk(seed).begin()
+        counts = arms.counts(db, study)
+        taken = [counts[Arm(LARGE, direction)] for direction in ("leftward", "rightward")]
+        assert sum(taken) == seed + 1
+        assert max(taken) - min(taken) <= 1
+
+
+def test_an_expired_lease_no_longer_counts_but_its_participant_may_go_on(
+    db: Database, study: Study, enrol_walk: Any, clock: Any
+) -> None:
+    gone = enrol_walk(1)
+    gone.begin()
+    assert sum(arms.counts(db, study).values()) == 1
+    clock.move(minutes=29)
+    assert sum(arms.counts(db, study).values()) == 1
+    clock.move(minutes=2)
+    assert sum(arms.counts(db, study).values()) == 0
+    second = enrol_walk(2)
+    second.begin()
+    participants.seen(db, gone.participant)
+    assert sum(arms.counts(db, study).values()) == 2
+    gone.finish()
+    assert progress.current_step(db, gone.participant).name == "thanks"
+
+
+def test_signs_of_life_keep_a_lease(
+    db: Database, study: Study, enrol_walk: Any, clock: Any
+) -> None:
+    walk = enrol_walk(1)
+    walk.begin()
+    for _ in range(4):
+        clock.move(minutes=20)
+        walk.participant = participants.seen(db, walk.participant)
+    assert sum(arms.counts(db, study).values()) == 1
+
+
+def test_completed_people_count_for_ever(
+    db: Database, study: Study, enrol_walk: Any, clock: Any
+) -> None:
+    walk = enrol_walk(1)
+    walk.begin()
+    walk.finish()
+    clock.move(days=400)
+    assert sum(arms.counts(db, study).values()) == 1
+
+
+def test_simulated_people_do_not_unbalance_real_ones(
+    db: Database, study: Study, enrol_walk: Any
+) -> None:
+    for seed in range(3):
+        enrol_walk(seed, simulated=True).begin()
+    assert sum(arms.counts(db, study).values()) == 0
+    assert sum(arms.counts(db, study, simulated=True).values()) == 3
+
+
+def test_abandoned_arms_are_filled_again(
+    db: Database, study: Study, enrol_walk: Any, clock: Any
+) -> None:
+    # Who drops out leaves a deficit; the next people fill it until the arms are even again.
+    abandons = [True, False, True, True, False, False, True, False, False, False, False, False]
+    for seed, abandoned in enumerate(abandons):
+        walk = enrol_walk(seed)
+        walk.begin()
+        if abandoned:
+            clock.move(minutes=31)
+        else:
+            walk.finish()
+        done = Counter(arms.counts(db, study))
+        assert abs(done[Arm(LARGE, "leftward")] - done[Arm(LARGE, "rightward")]) <= 1
+    assert set(done) == set(all_arms(study.definition))
