@@ -21,9 +21,16 @@ def records(frame: pd.DataFrame) -> list[dict[str, Any]]:
 
 
 def distance_label(distance: str, tables: Tables, *, joint: str = ", ") -> str:
-    """Name a distance together with the iris's diameter there, if it is known."""
+    """Name a distance together with the iris's diameter there, if it is known.
+
+    Clips of several sizes have irises of several; then the smallest and the largest are named.
+    """
     own = tables.ratings.loc[tables.ratings["distance"] == distance, "iris_px"].dropna()
-    return f"{distance}{joint}iris {own.median():.0f} px" if len(own) else distance
+    if own.empty:
+        return distance
+    low, high = own.min(), own.max()
+    size = f"{low:.0f} to {high:.0f}" if high > 1.1 * low else f"{own.median():.0f}"
+    return f"{distance}{joint}iris {size} px"
 
 
 def clip_label(clip: str) -> str:

@@ -122,11 +122,7 @@ def rating_axis(axes: Axes, scale: tuple[int, int], *, is_labelled: bool = True)
     axes.set_ylim(low - 0.3, high + 0.45)
     axes.set_yticks(range(low, high + 1))
     if is_labelled:
-        axes.set_ylabel(
-            f"perceived realism ({low} unrealistic, {high} photorealistic)",
-            fontsize=SMALL,
-            color=INK,
-        )
+        axes.set_ylabel(f"perceived realism, {low} to {high}", fontsize=SMALL, color=INK)
 
 
 def beeswarm(values: Sequence[float] | np.ndarray, *, step: float) -> np.ndarray:

@@ -29,7 +29,10 @@ class Chart:
     table: Callable[[Tables], pd.DataFrame]
 
 
-_INTERVAL: Final = "Symbols are means over people, lines 95 % t intervals."
+_INTERVAL: Final = (
+    "The scale runs from completely unrealistic to almost or completely photorealistic. Symbols "
+    "are means over people, vertical lines 95 % t intervals."
+)
 
 CHARTS: Final = (
     Chart(

@@ -5,6 +5,7 @@ Every person's rating is a dot, the mean carries its t interval, and n stands ab
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from typing import Any, Final
 
@@ -88,9 +89,9 @@ def _rows_of_panels(means: pd.DataFrame) -> list[list[pd.DataFrame]]:
         return [by_distance]
     rows = []
     for own in by_distance:
-        clips = list(dict.fromkeys(own["clip"]))
-        for start in range(0, len(clips), _CLIPS_PER_ROW):
-            rows.append([own[own["clip"].isin(clips[start : start + _CLIPS_PER_ROW])]])
+        clips = np.array(list(dict.fromkeys(own["clip"])), dtype=object)
+        for part in np.array_split(clips, -(-clips.size // _CLIPS_PER_ROW)):
+            rows.append([own[own["clip"].isin(part)]])
     return rows
 
 
@@ -148,7 +149,7 @@ def _draw_eye(
 
 def _name_clip(axes: Axes, x: float, name: str) -> None:
     axes.annotate(
-        name,
+        textwrap.fill(name, 20),
         (x, 0),
         xycoords=("data", "axes fraction"),
         xytext=(0, -29),

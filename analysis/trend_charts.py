@@ -29,7 +29,7 @@ from analysis.wording import number
 
 AGAINST_LOD: Final = "Perceived against actual level of detail"
 BY_DISTANCE: Final = "Perceived realism by viewing distance"
-NO_RANKS: Final = "The LoDs have no rank, so there is no order to compare ratings with."
+NO_ORDER: Final = "At no distance were two ranked LoDs rated, so there is no order to compare with."
 _PANELS_PER_ROW: Final = 4
 _MOST_LINES: Final = 100
 
@@ -38,8 +38,10 @@ def perceived_against_actual(tables: Tables) -> Figure:
     """Draw mean realism against the actual LoD, one panel per distance, each person as a line."""
     rated = answered(tables.ratings)
     ranked = rated[rated["lod_rank"].notna()]
+    is_ordered = ranked.groupby("distance")["lod"].transform("nunique") > 1
+    ranked = ranked[is_ordered.astype(bool)]
     if ranked.empty:
-        reason = NO_RATINGS if rated.empty else NO_RANKS
+        reason = NO_RATINGS if rated.empty else NO_ORDER
         return message_figure(AGAINST_LOD, reason, is_simulated=tables.is_simulated)
     means = mean_ratings(ranked, ["distance", "lod"])
     people = person_means(ranked, ["distance", "lod"])

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
+from analysis.chart_parts import distance_label
 from analysis.chart_style import (
     LOD_COLOURS,
     SIMULATED,
@@ -115,7 +116,16 @@ def test_lods_without_rank_are_told_and_not_put_in_order() -> None:
     )
     tables = tables_from({"ratings": frame})
     said = texts(figures(tables, ["perceived-against-actual"])["perceived-against-actual"])
-    assert "The LoDs have no rank, so there is no order to compare ratings with." in said
+    assert (
+        "At no distance were two ranked LoDs rated, so there is no order to compare with." in said
+    )
+
+
+def test_irises_of_several_sizes_are_named_by_their_range() -> None:
+    frame = pd.DataFrame({"participant": ["A", "B"], "lod": "low", "rating": [1, 2]})
+    tables = tables_from({"ratings": frame.assign(distance="near", iris_px=[106.7, 160.0])})
+    assert distance_label("near", tables) == "near, iris 107 to 160 px"
+    assert distance_label("far", tables) == "far"
 
 
 def test_many_clips_are_cut_into_rows() -> None:
