@@ -17,12 +17,13 @@ from renderer.makehuman import Floats, Mesh, base_mesh, phenotype, target_offset
 from renderer.rig import Rig, fit_rig, pose_vertices, rotation
 
 # MakeHuman's globes have 15 mm radius, ours 11.75: her lids meet ours when the head steps back.
-SET_BACK_MM: Final = 4.8
+SET_BACK_MM: Final = 4.9
+BROW_MM: Final = 3.6
 PHENOTYPE: Final = {"gender": 0.1, "age": 0.56, "muscle": 0.5, "weight": 0.47, "proportions": 0.7}
 RACES: Final = {"caucasian": 0.75, "asian": 0.13, "african": 0.12}
 # Away from the average that MakeHuman starts from: an average of faces looks like a doll.
 FACE: Final = {
-    "eyebrows/eyebrows-trans-backward": 0.5,
+    "eyebrows/eyebrows-trans-backward": 0.8,
     "head/head-oval": 0.4,
     "head/head-scale-vert-decr": 0.15,
     "head/head-scale-horiz-decr": 0.35,
@@ -58,8 +59,16 @@ def figure() -> Figure:
     middle = (centres[0] + centres[1]) / 2
     vertices = (vertices - middle) * INTEROCULAR_MM / (centres[0][0] - centres[1][0])
     vertices[:, 2] -= SET_BACK_MM
+    vertices[:, 2] -= _brow_ridge(vertices)
     rig = fit_rig(vertices)
     return Figure(mesh, pose_vertices(vertices, rig, rotations=_arms_down()), rig)
+
+
+def _brow_ridge(vertices: Floats) -> Floats:
+    """Return by how many mm to push back the brow, which hangs far over MakeHuman's eyes."""
+    x, y, z = vertices.T
+    sideways = np.exp(-(((np.abs(x) - 27.0) / 26.0) ** 2))
+    return np.where(z > 0.0, BROW_MM * sideways * np.exp(-(((y - 20.0) / 10.0) ** 2)), 0.0)
 
 
 def _arms_down() -> dict[str, Floats]:

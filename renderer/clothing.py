@@ -14,6 +14,7 @@ from renderer.makehuman import Floats, Indices
 from renderer.subdivide import subdivide
 
 LOWEST_MM: Final = -760.0  # the far view ends at -525
+COLLAR_MM: Final = -131.0  # the helper's own edge runs up to the ears: folded down to here
 LOOSENESS_MM: Final = 5.0
 SMOOTHING_STEPS: Final = 6  # wool bridges the hollows of the body
 COLOUR: Final = (0.055, 0.105, 0.125)  # linear; a dull blue-green that leaves the face alone
@@ -40,7 +41,7 @@ def sweater(body: Figure) -> Garment:
     points = _loosen(body.vertices_mm[used], quads)
     rest = mesh.vertices_mm[used]
     carried = np.column_stack([points, rest])
-    carried, quads = subdivide(carried, quads)
+    carried, quads = subdivide(carried, quads, levels=2)
     triangles = triangles_of(quads)
     points = carried[:, :3]
     return Garment(points, vertex_normals(points, triangles), triangles, _knit(carried[:, 3:]))
@@ -64,7 +65,10 @@ def _loosen(points: Floats, quads: Indices) -> Floats:
         )
         points = points + 0.6 * (1 - neck) * (total / np.maximum(degree, 1) - points)
     normals = vertex_normals(points, triangles_of(quads))
-    return np.asarray(points + normals * (LOOSENESS_MM - 3.0 * neck))
+    loose = points + normals * (LOOSENESS_MM - 3.0 * neck)
+    above = np.maximum(loose[:, 1] - COLLAR_MM, 0.0)
+    loose[:, 1] -= 0.85 * above
+    return np.asarray(loose)
 
 
 def _knit(rest: Floats) -> Floats:

@@ -44,6 +44,7 @@ class SkinPart:
     caruncle: Floats
     wet: Floats
     along_mm: Floats
+    sclera: Floats | float = 0.0  # 1 where the conjunctiva lies on the white of the eye
     sink_mm: Floats | float = 0.0  # below the surface, so that overlapping meshes do not fight
 
 
@@ -69,13 +70,15 @@ def face_mesh() -> FaceMesh:
     level2, quads2 = subdivide(level1, quads1)
     sockets = (_socket(level2, quads2, 0), _socket(level2, quads2, 1))
     lids = (lid_fit.fit_lids(sockets[0]), lid_fit.fit_lids(sockets[1]))
+    normals1 = vertex_normals(level1[:, :3], triangles_of(quads1))
+    normals2 = vertex_normals(level2[:, :3], triangles_of(quads2))
     quads1 = quads1[~_in_eye(level1, quads1)]
     quads2 = quads2[~_in_eye(level2, quads2)]
     near1, near2 = _in_box(level1, quads1, inset_mm=6.0), _in_box(level2, quads2)
     return FaceMesh(
-        fine=_part(level2, quads2[near2]),
-        rest=_part(level1, quads1[~near1]),
-        coarse=_part(level1, quads1),
+        fine=_part(level2, quads2[near2], normals=normals2),
+        rest=_part(level1, quads1[~near1], normals=normals1),
+        coarse=_part(level1, quads1, normals=normals1),
         patches=(_patch(lids[0], 0), _patch(lids[1], 1)),
         corners=(_corners(0), _corners(1)),
         lids=lids,
@@ -162,15 +165,14 @@ def _in_box(
     return np.asarray(((centre > low) & (centre < high)).all(axis=1))
 
 
-def _part(level: Floats, quads: Indices) -> SkinPart:
+def _part(level: Floats, quads: Indices, *, normals: Floats) -> SkinPart:
     used, rows = np.unique(quads, return_inverse=True)
     triangles = triangles_of(rows.reshape(-1, 4))
     points = level[used, :3]
     zero = np.zeros(len(points))
-    whole = vertex_normals(level[:, :3], triangles_of(quads))[used]
     return SkinPart(
         points,
-        whole,
+        normals[used],
         triangles,
         np.clip(level[used, 3], 0, 1),
         zero,
@@ -206,7 +208,7 @@ def _patch(lid: lid_fit.LidPatch, eye: int) -> SkinPart:
         zero,
         wet.ravel(),
         np.stack([turn, across], axis=-1).reshape(-1, 2),
-        (SEAM_SINK_MM * (np.arange(along) >= along - 3) * np.ones((around, 1))).ravel(),
+        sink_mm=(SEAM_SINK_MM * (np.arange(along) >= along - 3) * np.ones((around, 1))).ravel(),
     )
 
 
@@ -216,8 +218,8 @@ def _ramp(x: Floats, start: Floats, end: Floats) -> Floats:
 
 
 def _corners(eye: int) -> SkinPart:
-    inner, inner_quads, bump = caruncle()
-    outer, outer_quads = outer_membrane()
+    inner, inner_quads, bump, inner_white = caruncle()
+    outer, outer_quads, outer_white = outer_membrane()
     points = to_world(np.concatenate([inner, outer]), eye)
     triangles = triangles_of(np.concatenate([inner_quads, outer_quads + len(inner)]))
     if eye == 0:
@@ -234,4 +236,5 @@ def _corners(eye: int) -> SkinPart:
         pink,
         one,
         points[:, :2].copy(),
+        sclera=np.concatenate([inner_white, outer_white]),
     )

@@ -19,16 +19,18 @@ from renderer.character import figure
 from renderer.clip import ClipSpec
 from renderer.clothing import COLOUR, knit_tile, sweater
 from renderer.face_mesh import SkinPart, face_mesh, to_world
+from renderer.hair import COLOUR as HAIR_COLOUR
+from renderer.hair import grow_hair, hair_cap
 from renderer.head_buffers import CellMesh
-from renderer.lid_fit import ALONG, AROUND, grid_quads, lid_rims
 from renderer.lashes import grow_brow, grow_lashes
+from renderer.lid_fit import ALONG, AROUND, grid_quads, lid_rims
 from renderer.lids import LidRims
 from renderer.light import Light
 from renderer.makehuman import Floats, Indices
-from renderer.sky_visibility import Region, look_up, sky_visibility
 from renderer.program import build_program
 from renderer.skin import TILE_MM, TILE_PX, detail_coordinates, paint, pore_tile
 from renderer.skin_light import SkinLight, light_skin
+from renderer.sky_visibility import Region, look_up, sky_visibility
 from renderer.strand_buffers import StrandMesh
 
 CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
@@ -57,6 +59,7 @@ class Head:
         self._knit = _tile(gl, knit_tile())
         self._skin = _Skin(gl)
         self._cloth = _Cloth(gl)
+        self._cap = _Cap(gl)
         self._open_sky = self._bake_open_sky()
         self._hair = _grow_hair(gl)
         self._lit_by: Light | None = None
@@ -83,6 +86,7 @@ class Head:
             mesh.draw(skin, clip)
         fabric.set(**common, u_knit=self._knit, u_knit_level=max(0.0, np.log2(35.0 / density)))
         self._cloth.mesh.draw(fabric, clip)
+        self._cap.mesh.draw(skin, clip)
 
     def draw_hair(
         self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
@@ -112,7 +116,7 @@ class Head:
         program.set(u_world_to_clip=matrix)
         clip = np.asarray(matrix, dtype=float)
         self.gl.disable(moderngl.CULL_FACE)
-        for mesh in [*self._skin.close, self._cloth.mesh]:
+        for mesh in [*self._skin.close, self._cloth.mesh, self._cap.mesh]:
             mesh.draw(program, clip)
 
     def _bake_open_sky(self) -> dict[str, npt.NDArray[np.float32]]:
@@ -124,8 +128,9 @@ class Head:
             head = {name: parts[name] for name in ("fine", "rest", "coarse")}
             regions = [Region((0.0, -30.0, -50.0), 190.0, head)]
             for eye, x in enumerate((-31.0, 31.0)):
-                meshes = {name: parts[name] for name in (f"patch{eye}", f"corner{eye}")}
-                regions.append(Region((x, 0.0, 5.0), 34.0, meshes))
+                meshes = {name: parts[name] for name in ("fine", f"patch{eye}", f"corner{eye}")}
+                regions.append(Region((x, 0.0, 8.0), 34.0, meshes))
+            regions[0].meshes["cap"] = (self._cap.cap.points_mm, self._cap.cap.normals)
             meshes = {"cloth": (cloth.points_mm, cloth.normals)}
             regions.append(Region((0.0, -350.0, -50.0), 520.0, meshes))
             shares = sky_visibility(self.gl, self.draw_depth, regions)
@@ -161,6 +166,8 @@ class Head:
         )
         cloth = self._cloth.garment
         self._cloth.write_light(lit(cloth.points_mm, cloth.normals, cloth.triangles, "cloth"))
+        cap = self._cap.cap
+        self._cap.write_light(lit(cap.points_mm, cap.normals, cap.triangles, "cap"))
         self._lit_by = light
 
 
@@ -223,6 +230,27 @@ class _Cloth:
         self.mesh.write_light(_lit_rows(light, gloss=zero, wet=zero))
 
 
+class _Cap:
+    """The mass of the hair and its mesh."""
+
+    def __init__(self, gl: moderngl.Context) -> None:
+        self.cap = hair_cap(face_mesh())
+        count = len(self.cap.points_mm)
+        rows = [
+            self.cap.points_mm,
+            self.cap.normals,
+            np.tile(np.array(HAIR_COLOUR) * 0.5, (count, 1)),
+            np.zeros((count, 5)),
+        ]
+        self.mesh = CellMesh(gl, np.column_stack(rows), self.cap.triangles)
+
+    def write_light(self, light: SkinLight) -> None:
+        """Replace the baked light; the cap lies in the shade of the ribbons and has no shine."""
+        zero = np.zeros(len(light.sun))
+        dull = SkinLight(light.diffuse, 0.2 * light.ambient, zero)
+        self.mesh.write_light(_lit_rows(dull, gloss=zero, wet=zero))
+
+
 def pore_tile_cached() -> npt.NDArray[np.uint8]:
     """Return the pore tile from the cache, or make it (2 s)."""
     return cached_arrays("skin's pores", lambda: {"tile": pore_tile()})["tile"].astype(np.uint8)
@@ -237,6 +265,8 @@ def _grow_hair(gl: moderngl.Context) -> list[StrandMesh]:
         for strands in (grow_lashes(face.lids[eye], rng), grow_brow(face.sockets[eye], rng)):
             placed = replace(strands, points_mm=to_world(strands.points_mm, eye))
             meshes.append(StrandMesh(gl, placed, rng))
+    rng = np.random.Generator(np.random.PCG64(HAIR_SEED + 2))
+    meshes.append(StrandMesh(gl, grow_hair(hair_cap(face), rng), rng))
     return meshes
 
 

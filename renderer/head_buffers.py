@@ -98,7 +98,7 @@ class CellMesh:
 
 
 def _by_first_use(triangles: Indices) -> tuple[Indices, Indices]:
-    """Return the vertices in the order in which triangles name them, and the renumbered triangles."""
+    """Return the vertices in the order of their first use, and the triangles renumbered."""
     flat = triangles.ravel()
     used, first, inverse = np.unique(flat, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")

@@ -15,11 +15,11 @@ from renderer.makehuman import Floats
 
 UPPER_COUNT: Final = 165  # adults: about 150 upper, 75 lower lashes in two or three rows
 LOWER_COUNT: Final = 80
-BROW_COUNT: Final = 620
+BROW_COUNT: Final = 760
 LASH_POINTS: Final = 8
 BROW_POINTS: Final = 6
 LASH_COLOUR: Final = (0.010, 0.0065, 0.005)
-BROW_COLOUR: Final = (0.040, 0.023, 0.014)
+BROW_COLOUR: Final = (0.030, 0.018, 0.011)
 # The brow's middle line from nose to temple: x, y, half width in mm, direction of growth in degrees
 # above the way to the temple.
 BROW: Final = np.array(
@@ -50,7 +50,7 @@ def grow_lashes(lid: LidPatch, rng: np.random.Generator) -> Strands:
     lower = _lash_row(lid, rng, is_upper=False, count=LOWER_COUNT)
     points = np.concatenate([upper, lower])
     width = np.concatenate(
-        [rng.uniform(0.085, 0.125, len(upper)), rng.uniform(0.04, 0.07, len(lower))]
+        [rng.uniform(0.07, 0.11, len(upper)), rng.uniform(0.04, 0.07, len(lower))]
     )
     tone = rng.uniform(0.7, 1.5, size=(len(points), 1))
     return Strands(points, width, np.array(LASH_COLOUR) * tone)
@@ -91,8 +91,8 @@ def _lash_lengths(x: Floats, rng: np.random.Generator, *, is_upper: bool) -> Flo
     """Return lengths in mm: longest in the outer half, short towards the nose."""
     along = (x + 12.0) / 24.5
     shape = 0.50 + 0.55 * np.sin(np.pi * np.clip(0.12 + 0.72 * along, 0, 1)) ** 1.2
-    longest = 8.8 if is_upper else 4.6
-    return np.asarray(longest * shape * rng.uniform(0.68, 1.08, len(x)))
+    longest = 7.8 if is_upper else 4.3
+    return np.asarray(longest * shape * rng.uniform(0.55, 1.12, len(x)))
 
 
 def _lash_directions(
@@ -101,14 +101,14 @@ def _lash_directions(
     """Return unit directions at the root and at the tip: forwards, fanning out, curling away."""
     count = len(root)
     fan = np.clip(root[:, 0] / 13.0 + 0.10, -1, 1) * (0.62 if is_upper else 0.5)
-    fan = fan + rng.normal(0, 0.10, count)
+    fan = fan + rng.normal(0, 0.15, count)
     lift = rng.normal(0, 0.08, count)
     if is_upper:
         first = np.column_stack([fan * 0.7, -0.05 + lift, np.full(count, 0.95)])
         last = np.column_stack([fan * 1.1, 0.86 + lift, np.full(count, 0.62)])
     else:
         first = np.column_stack([fan * 0.8, -0.35 + lift, np.full(count, 0.85)])
-        last = np.column_stack([fan * 1.2, -0.72 + lift, np.full(count, 0.42)])
+        last = np.column_stack([fan * 1.2, -0.46 + lift, np.full(count, 0.62)])
     # Near the temple the whole fan turns sideways with the lid.
     turn = np.clip((root[:, 0] - 4.0) / 9.0, 0, 1)[:, None] * np.array([0.45, 0.0, -0.2])
     first, last = first + turn, last + turn
@@ -126,7 +126,7 @@ def _towards_clump(tip: Floats, rng: np.random.Generator) -> Floats:
     while at < len(order):
         size = int(rng.integers(1, 6))
         members = order[at : at + size]
-        strength = rng.uniform(0.25, 0.75)
+        strength = rng.uniform(0.15, 0.8)
         shift[members] = strength * (tip[members].mean(axis=0) - tip[members])
         at += size
     return shift

@@ -24,8 +24,9 @@ MEDIAL_MM: Final = (-16.6, -2.1)  # ... and beside the nose
 LATERAL_Z_MM: Final = 4.6
 MEDIAL_Z_MM: Final = 8.0
 CLEARANCE_MM: Final = 0.06  # tear film between rim and globe
+TUCK_MM: Final = 11.0  # radius of the patch's innermost ring
 MARGIN_MM: Final = 1.9  # lid thickness at the rim
-OUTLINE_MM: Final = (24.5, 19.5, 17.5, 17.0)  # patch ends: temple, nose, up, down of (0, 0)
+OUTLINE_MM: Final = (24.5, 22.5, 17.5, 17.0)  # patch ends: temple, nose, up, down of (0, 0)
 # Lift in mm of the outermost rings over the face, and how far they obey.
 ENDING: Final = ((0.0, 0.6), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0))
 AROUND: Final = 192
@@ -182,7 +183,8 @@ def _control_net(inner: Floats, is_upper: Floats, socket: Socket) -> tuple[Float
     margin /= np.linalg.norm(margin, axis=1, keepdims=True)
     thick = MARGIN_MM * (1 - 0.45 * canthus) * (1.0 - 0.1 * is_upper)
     edge = inner + margin * thick[:, None]
-    tuck = inner - radial * 1.1
+    # The first ring lies inside the globe: no light shines between lid and globe.
+    tuck = radial * TUCK_MM
     rows = [tuck, inner - radial * 0.15]
     rows += [inner + margin * (thick * share)[:, None] for share in (0.12, 0.45, 0.8)]
     rim_control = len(rows)
@@ -262,7 +264,7 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
     platform = (2.7 - 0.8 * _smooth((x - 2.0) / 10.0) - 0.7 * _smooth((-x - 8.0) / 8.0)) * (
         1 - 0.45 * canthus
     )
-    fold = 1.5 * (1 - 0.75 * canthus)
+    fold = 1.9 * (1 - 0.7 * canthus)
     rows = [_skin_point(edge, outward, d * one, -0.02 * one) for d in (0.35, 0.8)]
     rows += [_skin_point(edge, outward, platform * share, 0.10 * one) for share in (0.5, 0.78)]
     rows.append(_skin_point(edge, outward, platform * 0.97, -0.15 * one))
@@ -275,7 +277,7 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
     after = crease + np.column_stack([*(outward * 1.2).T, 1.25 * fold])
     rows.append(after)
     rest = end - platform * 1.05
-    for share, bulge in ((0.2, 1.9), (0.36, 1.8), (0.53, 1.0), (0.7, 0.3), (0.87, 0.0)):
+    for share, bulge in ((0.2, 2.5), (0.36, 2.5), (0.53, 1.5), (0.7, 0.5), (0.87, 0.0)):
         face = _face_point(
             edge,
             outward,
@@ -299,13 +301,14 @@ def _lower_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
         _skin_point(edge, outward, d * one, lift * one) for d, lift in ((0.35, 0.0), (0.8, 0.08))
     ]
     near = ((1.5, 0.3), (2.3, 0.42), (3.2, 0.48), (4.1, 0.48), (5.0, 0.45), (5.9, 0.42), (6.9, 0.4))
+    squeeze = np.minimum(0.45 + 0.55 * away, 0.5 * end / 6.9)
     for distance, lift in near:
-        d = distance * (0.45 + 0.55 * away)
+        d = distance * squeeze
         skin = _skin_point(edge, outward, d, lift * away)
         face = _face_point(edge, outward, d, socket=socket, lift=lift * away)
         blend = _smooth((distance * (1 + 2.0 * canthus) - 0.5) / 7.0)[:, None]
         rows.append(skin * (1 - blend) + face * blend)
-    first = 6.9 * (0.45 + 0.55 * away)
+    first = 6.9 * squeeze
     for share, lift in ((0.18, 0.35), (0.36, 0.25), (0.54, 0.12), (0.72, 0.02), (0.88, 0.0)):
         d = first + (end - first) * share
         rows.append(_face_point(edge, outward, d, socket=socket, lift=lift * away))

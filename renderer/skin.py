@@ -13,12 +13,16 @@ import numpy.typing as npt
 
 from renderer.camera import eye_centre_mm
 from renderer.face_mesh import SkinPart
+from renderer.hair import COLOUR as HAIR_COLOUR
+from renderer.hair import inside_hairline
+from renderer.lashes import BROW, BROW_COLOUR
 from renderer.makehuman import Floats
 
 BASE: Final = (0.60, 0.375, 0.275)
 LIPS: Final = (0.46, 0.190, 0.170)
 MARGIN: Final = (0.62, 0.340, 0.290)
 WET: Final = (0.60, 0.265, 0.235)
+SCLERA: Final = (0.66, 0.52, 0.46)  # seen through the conjunctiva in the corners
 CARUNCLE: Final = (0.64, 0.235, 0.200)
 # Tints: centre x, y in mm, radii in mm, factor of the albedo. Both sides alike unless x is 0.
 ZONES: Final = (
@@ -41,14 +45,30 @@ def paint(part: SkinPart) -> tuple[Floats, Floats]:
         weight = np.exp(-(((np.abs(x) - cx) / rx) ** 2) - ((y - cy) / ry) ** 2)
         albedo *= 1 + weight[:, None] * (np.array(factor) - 1)
     _tint_around_eyes(albedo, part)
+    _stubble(albedo, part)
     for share, colour in (
         (part.lips, LIPS),
         (part.margin, MARGIN),
         (part.wet * (1 - part.caruncle), WET),
         (part.caruncle, CARUNCLE),
+        (part.sclera * np.ones(len(x)), SCLERA),
     ):
         albedo += share[:, None] * (np.array(colour) - albedo)
     return albedo, _gloss(part)
+
+
+def _stubble(albedo: Floats, part: SkinPart) -> None:
+    """Darken the scalp and the skin under the brows: roots too fine to be drawn."""
+    above = inside_hairline(part.points_mm)
+    scalp = np.clip((above + 2.0) / 8.0, 0, 1)[:, None]
+    albedo += 0.9 * scalp * (0.6 * np.array(HAIR_COLOUR) - albedo)
+    for eye in (0, 1):
+        local = part.points_mm - eye_centre_mm(eye)
+        x, y = local[:, 0] * (1.0 if eye else -1.0), local[:, 1]
+        middle, half = (np.interp(x, BROW[:, 0], BROW[:, column]) for column in (1, 2))
+        inside = np.exp(-(((y - middle) / (half + 0.6)) ** 4)) * (np.abs(x - 4.0) < 22.0)
+        front = part.points_mm[:, 2] > -20.0
+        albedo += (0.5 * inside * front)[:, None] * (np.array(BROW_COLOUR) - albedo)
 
 
 def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
@@ -61,8 +81,8 @@ def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
         ring = np.exp(-(((x + 2.0) / 15.0) ** 2) - ((y + 11.5) / 5.0) ** 2)
         inner = np.exp(-(((x + 16.0) / 6.0) ** 2) - ((y + 1.0) / 9.0) ** 2)
         for weight, factor in (
-            (lid, (0.98, 0.86, 0.86)),
-            (upper, (0.96, 0.88, 0.90)),
+            (lid, (0.99, 0.89, 0.88)),
+            (upper, (0.99, 0.93, 0.93)),
             (ring, (0.90, 0.85, 0.90)),
             (inner, (0.93, 0.86, 0.90)),
         ):
@@ -91,7 +111,7 @@ def pore_tile(seed: int = 11) -> npt.NDArray[np.uint8]:
     cavity = np.clip(1.0 + 14.0 * (relief - _blur(relief, 0.35)), 0.0, 1.0)
     mottle = 0.5 + 0.16 * sum(
         share * _blur_noise(rng, size)
-        for share, size in ((0.5, 0.09), (0.8, 0.25), (1.0, 0.8), (0.8, 2.0))
+        for share, size in ((0.5, 0.09), (0.8, 0.25), (0.8, 0.7), (0.5, 1.6))
     )
     layers = [0.5 + 0.5 * slopes[0], 0.5 + 0.5 * slopes[1], cavity, mottle]
     return np.stack([np.clip(layer * 255 + 0.5, 0, 255).astype(np.uint8) for layer in layers], -1)
@@ -101,9 +121,9 @@ def _relief(rng: np.random.Generator) -> Floats:
     """Return heights in mm: polygons between fine furrows, pores, and soft waviness."""
     fine = _furrows(rng, cells=52)
     coarse = _furrows(rng, cells=30)
-    height = -0.016 * np.exp(-fine / 0.05) - 0.024 * np.exp(-coarse / 0.075)
+    height = -0.010 * np.exp(-fine / 0.06) - 0.010 * np.exp(-coarse / 0.09)
     height += 0.006 * _blur_noise(rng, 0.08) + 0.012 * _blur_noise(rng, 0.5)
-    return np.asarray(height - 0.045 * _pores(rng, count=420))
+    return np.asarray(height - 0.045 * _pores(rng, count=560))
 
 
 def _furrows(rng: np.random.Generator, *, cells: int) -> Floats:
@@ -153,4 +173,6 @@ def _blur(field: Floats, size_mm: float) -> Floats:
 def detail_coordinates(points_mm: Floats) -> Floats:
     """Return (n, 2) coordinates in the pore tile: wound around the head, in tiles."""
     x, y, z = points_mm.T
-    return np.column_stack([95.0 * np.arctan2(x, z + 95.0), y]) / TILE_MM
+    wound = 95.0 * np.arctan2(x, z + 95.0)
+    is_ear = (np.abs(x) > 71.0) & (z < -60.0) & (np.abs(y + 15.0) < 50.0)
+    return np.column_stack([np.where(is_ear, z, wound), y]) / TILE_MM

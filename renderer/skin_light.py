@@ -71,7 +71,7 @@ def light_skin(
     sun_cosine = np.maximum(normals @ sky.sun_direction, 0.0)
     direct = (sun * sun_cosine)[:, None] * sky.sun_irradiance
     irradiance = free @ sky_radiance(sky, towards) + direct
-    typical = irradiance.mean(axis=0)
+    typical = np.pi * sky_radiance(sky, towards).mean(axis=0) + 0.3 * sky.sun_irradiance
     irradiance += (1 - ambient)[:, None] * typical * BOUNCE_ALBEDO
     diffuse = scatter(points_mm, triangles, irradiance / np.pi)
     return SkinLight(diffuse, ambient, sun)

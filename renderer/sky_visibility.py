@@ -54,7 +54,10 @@ class DepthProbe:
 
 
 def look_up(depth: Visible, matrix: Floats, points_mm: Floats, *, radius_px: int = 1) -> Visible:
-    """Return the share (n,) of the (2 r + 1)^2 texels around each point that do not cover it."""
+    """Return the share (n,) of the (2 r + 1)^2 texels around each point that do not cover it.
+
+    Points outside the map are free.
+    """
     clip = points_mm @ matrix[:3, :3].T + matrix[:3, 3]
     size = depth.shape[0]
     place = (clip[:, :2] * 0.5 + 0.5) * size - 0.5
@@ -66,7 +69,8 @@ def look_up(depth: Visible, matrix: Floats, points_mm: Floats, *, radius_px: int
         rows = np.clip(row + dy, 0, size - 1)
         for dx in steps:
             total += far <= depth[rows, np.clip(column + dx, 0, size - 1)]
-    return total / (2 * radius_px + 1) ** 2
+    inside = (np.abs(clip) < 1.0).all(axis=1)
+    return np.where(inside, total / (2 * radius_px + 1) ** 2, np.float32(1.0))
 
 
 @dataclass(frozen=True)
@@ -77,11 +81,16 @@ class Region:
     half_mm: float
     meshes: dict[str, tuple[Floats, Floats]]  # name -> points (n, 3) and normals (n, 3)
 
+    def contains(self, points: Floats) -> npt.NDArray[np.bool_]:
+        """Return which points (n, 3) lie well inside the cube."""
+        away = np.abs(points - self.centre_mm)
+        return np.asarray((away < 0.9 * self.half_mm).all(axis=1))
+
 
 def sky_visibility(gl: moderngl.Context, draw: Draw, regions: list[Region]) -> dict[str, Visible]:
     """Return for each mesh by name how free (n, DIRECTIONS) the directions are, 0 to 1.
 
-    Directions behind the surface count as closed. Points are lifted off their surface by a texel.
+    A mesh may be named by several regions: the last that holds a point decides. Directions behind the surface count as closed. Points are lifted off their surface by a texel.
     """
     probe = DepthProbe(gl)
     names = {name: points for region in regions for name, (points, _) in region.meshes.items()}
@@ -98,7 +107,7 @@ def sky_visibility(gl: moderngl.Context, draw: Draw, regions: list[Region]) -> d
             texel = 2 * region.half_mm / MAP_PX
             for name, (points, normals) in region.meshes.items():
                 cosine = normals @ direction
-                front = cosine > 0.0
+                front = (cosine > 0.0) & region.contains(points)
                 lifted = points[front] + _lift(normals[front], cosine[front], direction) * texel
                 free[name][front, number] = look_up(depth, matrix, lifted)
     probe.release()

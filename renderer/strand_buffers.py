@@ -38,7 +38,8 @@ class StrandMesh:
 def ribbons(strands: Strands, rng: np.random.Generator) -> tuple[Floats, Indices]:
     """Return vertex rows (n, 13) in the order of LAYOUT and triangles (m, 3).
 
-    ``in_ribbon``: side -1 or 1, half width at the root in mm, place along the strand 0 to 1, thinning number.
+    ``in_ribbon``: side -1 or 1, half width at the root in mm, place along the strand 0 to 1, and
+    the thinning number.
     """
     count, points, _ = strands.points_mm.shape
     tangent = np.gradient(strands.points_mm, axis=1)

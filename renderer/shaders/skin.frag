@@ -26,7 +26,7 @@ void main() {
     vec3 b = cross(n, t);
 
     vec4 pores = textureLod(u_pores, v_detail.xy, u_pore_level);
-    vec2 slope = (pores.xy - 0.5) * (1.1 - 0.4 * v_lid);
+    vec2 slope = (pores.xy - 0.5) * (0.95 - 0.3 * v_lid);
     if (v_lid > 0.02) {
         vec4 crepe = textureLod(u_pores, v_detail.zw * vec2(0.012, 0.075), u_pore_level);
         slope += (crepe.xy - 0.5) * vec2(0.25, 1.3) * v_lid;
@@ -34,7 +34,7 @@ void main() {
     slope *= dry;
     vec3 n_detail = normalize(n - slope.x * t - slope.y * b);
 
-    vec3 albedo = v_albedo * (1.0 + (pores.a - 0.5) * vec3(0.20, 0.30, 0.34) * dry);
+    vec3 albedo = v_albedo * (1.0 + (pores.a - 0.5) * vec3(0.13, 0.20, 0.23) * dry);
     albedo *= 1.0 - 0.3 * dry * (1.0 - pores.b);
     float cosine = max(dot(n_detail, u_sun_direction), 0.0);
     float change = cosine - max(dot(n, u_sun_direction), 0.0);
