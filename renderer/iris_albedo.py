@@ -7,14 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.iris_layout import (
-    IRIS_RADIUS_MM,
-    Array,
-    IrisLayout,
-    Spots,
-    closed_noise,
-    over_angle,
-)
+from renderer.iris_angles import closed_noise, over_angle
+from renderer.iris_layout import IRIS_RADIUS_MM, Array, IrisLayout, Spots
 from renderer.iris_plane import HALF_SIZE_MM, Plane, blur
 from renderer.iris_relief import Relief
 from renderer.noise import Field
@@ -89,7 +83,8 @@ def _lightness(relief: Relief, look: Family) -> Field:
     lift -= f(0.30) * relief.furrow + f(0.85 * (1.0 - 0.3 * look.veil)) * relief.crypt
     lift *= f(look.contrast)
     lift += f(0.05) * relief.streaks + f(0.10) * relief.patches
-    return np.clip(lift, f(-1.8), f(1.2))
+    # Light that scatters between fibres fills gaps and evens out crests: both ends bend.
+    return np.asarray(f(1.5) * np.tanh(lift * f(1.0 / 1.5)))
 
 
 def _ridge_light(plane: Plane, relief: Relief) -> Field:
@@ -111,7 +106,7 @@ def _balanced_gain(plane: Plane, lift: Field) -> Field:
 def _pale_crests(planes: Array, lift: Field, look: Family) -> None:
     """Make crests a little paler than gaps: thick stroma scatters all wavelengths."""
     grey = sum(np.float32(w) * plane for w, plane in zip(_LUMINANCE, planes, strict=True))
-    pale = np.clip(np.float32(look.pallor) * (lift + np.float32(0.25)), -0.10, 0.30)
+    pale = np.clip(np.float32(look.pallor) * (lift + np.float32(0.45)), 0.0, 0.30)
     planes += (grey - planes) * pale
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.iris_layout import IrisLayout, over_angle
+from renderer.iris_angles import over_angle
+from renderer.iris_layout import IrisLayout
 from renderer.iris_runs import lay_runs, polar_tubes, taper
 from renderer.noise import noise_1d
 from renderer.tubes import Tubes
@@ -46,7 +47,7 @@ def pupillary_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
 def collarette_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
     """Return the collarette: broken cords that follow the zigzag and weave about it."""
     rng = np.random.Generator(np.random.PCG64([seed, 0xC0]))
-    count, key = 230, seed * 16 + 10
+    count, key = 150, seed * 16 + 10
     span = np.clip(rng.exponential(0.10, count), 0.05, 0.5)
     first = rng.uniform(0, 2 * np.pi, count)
     # These runs go along the angle; the ring's radius of about 3.4 mm turns it into lengths.
@@ -61,13 +62,13 @@ def collarette_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
     ring = over_angle(layout.collarette_mm, angle)
     radius = ring + (layout.collarette_mm.mean() - ring) * (1.0 - follows) * 0.7 + shift
     ends = taper(runs, reach=0.22, scale=3.4)
-    crest = rng.uniform(0.34, 0.66, count).astype(np.float32)[run]
+    crest = rng.uniform(0.26, 0.60, count).astype(np.float32)[run]
     crest += 0.10 * noise_1d(run, angle / np.float32(0.06), key + 22)
     return polar_tubes(
         radius,
         angle,
         runs,
-        half_width_mm=rng.uniform(0.014, 0.032, count)[run] * (0.2 + 0.8 * ends),
+        half_width_mm=rng.uniform(0.009, 0.030, count)[run] * (0.2 + 0.8 * ends),
         crest=crest * (0.3 + 0.7 * ends),
-        tone=rng.uniform(0.40, 0.70, count).astype(np.float32)[run],
+        tone=rng.uniform(0.32, 0.64, count).astype(np.float32)[run],
     )

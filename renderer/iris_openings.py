@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.iris_layout import Crypts, IrisLayout, angle_between, over_angle
+from renderer.iris_angles import angle_between, over_angle
+from renderer.iris_layout import Crypts, IrisLayout
 from renderer.iris_plane import HALF_SIZE_MM, Plane
 from renderer.noise import Field, noise_grid
 from renderer.texture_maps import smoothstep

@@ -11,7 +11,8 @@ from typing import Final
 import numpy as np
 from scipy import ndimage
 
-from renderer.iris_layout import IRIS_RADIUS_MM, PUPIL_RADIUS_MM, IrisLayout, over_angle
+from renderer.iris_angles import over_angle
+from renderer.iris_layout import IRIS_RADIUS_MM, PUPIL_RADIUS_MM, IrisLayout
 from renderer.noise import Field
 
 # Half the side of the square that the maps cover: the iris's radius and 0.15 mm of margin.

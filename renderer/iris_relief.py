@@ -117,7 +117,7 @@ def _cover(
 def _surface_mm(height: Field, size_px: int) -> Field:
     """Return the surface's relief in mm: fibres are sunk in jelly, which fills most of each gap."""
     broad = blur(height, 0.07, size_px)
-    surface = broad + np.float32(0.10) * (height - broad)
+    surface = broad + np.float32(0.08) * (height - broad)
     return np.maximum(np.float32(RELIEF_MM) * surface, np.float32(0.0))
 
 

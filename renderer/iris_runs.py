@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from renderer.iris_layout import IRIS_RADIUS_MM, Array, IrisLayout, angle_between, over_angle
+from renderer.iris_angles import angle_between, over_angle
+from renderer.iris_layout import IRIS_RADIUS_MM, Array, IrisLayout
 from renderer.noise import Field, polar_noise, sample_polar
 from renderer.tubes import Tubes
 

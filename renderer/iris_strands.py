@@ -11,8 +11,9 @@ from typing import Final
 
 import numpy as np
 
+from renderer.iris_angles import over_angle
 from renderer.iris_inner_strands import collarette_tubes, pupillary_tubes
-from renderer.iris_layout import IRIS_RADIUS_MM, Array, IrisLayout, over_angle
+from renderer.iris_layout import IRIS_RADIUS_MM, Array, IrisLayout
 from renderer.iris_runs import (
     Runs,
     bend_with_flow,

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from renderer import sclera
+from renderer.scleral_vessels import vessel_density
 
 SIZE_PX = 512
 
@@ -32,7 +33,7 @@ def maps() -> sclera.ScleraMaps:
 
 @pytest.fixture(scope="module")
 def density() -> Any:
-    return sclera.vessel_density(1, 1024)
+    return vessel_density(1, 1024)
 
 
 def plane(size_px: int) -> tuple[Any, Any, Any]:
