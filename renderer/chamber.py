@@ -22,6 +22,7 @@ Array = npt.NDArray[np.float64]
 
 LID_FRONT_MM: Final = 13.4  # radius of the lids' middle surface, which rays pass or hit
 LID_SOFTNESS_MM: Final = 0.5
+LID_SOFTENING: Final = 0.12  # per mm of way: grazing rays meet lashes and a rounded edge
 LID_REFLECTANCE: Final = (0.38, 0.24, 0.18)  # skin, linear Rec. 709
 _ANGLES: Final = (24, 48)  # polar and azimuthal directions of the hemisphere
 
@@ -115,7 +116,8 @@ def lid_openness(points: Array, directions: Array, rims: LidRims) -> Array:
     upper = np.interp(at[:, 0], rims.upper_mm[:, 0], rims.upper_mm[:, 1])
     lower = np.interp(at[:, 0], rims.lower_mm[:, 0], rims.lower_mm[:, 1])
     room = np.minimum(upper - at[:, 1], at[:, 1] - lower)
-    share = np.clip(0.5 + room / (2 * LID_SOFTNESS_MM), 0.0, 1.0)
+    softness = LID_SOFTNESS_MM + LID_SOFTENING * reach
+    share = np.clip(0.5 + room / (2 * softness), 0.0, 1.0)
     return np.asarray(share * share * (3.0 - 2.0 * share))
 
 

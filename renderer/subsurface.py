@@ -153,13 +153,13 @@ def _mean_transmittance(start: Array, end: Array) -> Array:
     return np.where(small, np.exp(-start), (np.exp(-start) - np.exp(-end)) / safe)
 
 
-def subsurface_gain(mean_thickness_mm: Array, tissue: Tissue, *, single_albedo: Array) -> Array:
-    """Return the factor (3,) that gives a flat mean column a single-scattering albedo (3,).
+def subsurface_gain(mean_thickness_mm: Array, tissue: Tissue) -> Array:
+    """Return the factor (3,) that makes a flat mean column scatter as a white Lambertian would.
 
-    The coefficients of iris tissue are estimates; the iris maps' colour is the measured part. So
-    the layers decide how light varies, and the colour how bright it is on average, seen and lit
-    along the axis.
+    Seen and lit along the axis. The coefficients of iris tissue are estimates, the iris map's
+    colour is what photographs show: so the colour says how bright tissue is on average, and the
+    layers how it varies with thickness, view and light.
     """
     path = Path(lambda at: np.tile(mean_thickness_mm, (len(at), 1)), 1.0, 1.0, -1.0)
     single = math.pi * piecewise_linear(path, tissue, nodes=4)
-    return np.asarray(single_albedo / np.maximum(single, 1e-6))
+    return np.asarray(1.0 / np.maximum(single, 1e-9))

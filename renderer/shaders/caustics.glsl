@@ -29,7 +29,7 @@ IrisLight light_on_iris(vec2 x_mm, Surface s) {
     float reaching = s.sun;
     float gain = max(toward_sun.z, 0.0);
     light.w_eye = -toward_sun;
-    light.ambient = ambient_irradiance(turned_to_world(vec3(0.0, 0.0, 1.0))) * lid_shade(s.p_eye);
+    light.ambient = ambient_irradiance(turned_to_world(vec3(0.0, 0.0, 1.0))) * s.sky;
     if (REFRACTION >= HIGH || CAUSTICS >= HIGH) {
         vec3 q = textureLod(u_caustic_map, plane_uv(x_mm), plane_lod(u_caustic_map)).rgb;
         light.w_eye = normalize(vec3(q.xy, -sqrt(max(1.0 - dot(q.xy, q.xy), 0.01))));
@@ -39,7 +39,7 @@ IrisLight light_on_iris(vec2 x_mm, Surface s) {
             gain = q.z / (CORNEA_IOR * CORNEA_IOR);
             light.ambient = textureLod(u_chamber_map, plane_uv(x_mm), 0.0).rgb
                           / (CORNEA_IOR * CORNEA_IOR);
-            reaching = sun_reaching(light_entry(x_mm, light.w_eye), toward_sun);
+            reaching = shade_at(light_entry(x_mm, light.w_eye)).a;
         }
     }
     light.sun = u_sun_irradiance * gain * reaching;

@@ -27,12 +27,18 @@ vec3 iris_radiance(Surface s) {
     return ray.transmitted * u_iris_gain * reflectance * (sun + ambient) / PI;
 }
 
-void main() {
-    Surface s = surface_at(v_p_eye, v_n_eye);
+vec3 eye_radiance(Surface s) {
     vec3 body = vec3(0.0);
     // Software GL jumps over loops that no pixel of a block enters, but computes both sides of if.
     int iris = s.cornea > 0.002 ? 1 : 0, sclera = s.cornea < 0.998 ? 1 : 0;
     for (int i = 0; i < iris; ++i) body += s.cornea * iris_radiance(s);
     for (int i = 0; i < sclera; ++i) body += (1.0 - s.cornea) * sclera_radiance(s);
-    f_radiance = vec4(min(body + tear_film_radiance(s), vec3(6e4)), 1.0);
+    return min(body + tear_film_radiance(s), vec3(6e4));
+}
+
+void main() {
+    vec3 radiance = vec3(0.0);
+    int seen = between_lids(v_p_eye) ? 1 : 0;
+    for (int i = 0; i < seen; ++i) radiance = eye_radiance(surface_at(v_p_eye, v_n_eye));
+    f_radiance = vec4(radiance, 1.0);
 }

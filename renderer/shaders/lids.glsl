@@ -11,12 +11,22 @@ vec4 rims_at(float x_mm) {
     return textureLod(u_lid_rims, vec2(0.5 + 0.5 * x_mm / RIM_EDGE_MM, 0.5), 0.0);
 }
 
+// Whether a point of the globe, or its neighbourhood, can lie open to view. Lids may be modelled a
+// little wider than their rims say.
+bool between_lids(vec3 p_eye) {
+    const float margin_mm = 2.5;
+    vec4 rims = rims_at(p_eye.x);
+    return p_eye.z > -2.0 && p_eye.y < rims.x + margin_mm && p_eye.y > rims.y - margin_mm;
+}
+
 // 1 where a ray leaves between the lids, 0 where it meets one (renderer/chamber.py, lid_openness).
 float lid_openness(vec3 p_eye, vec3 d_eye, float softness_mm) {
     float along = dot(p_eye, d_eye);
     float excess = dot(p_eye, p_eye) - LID_FRONT_MM * LID_FRONT_MM;
-    vec3 at = p_eye + max(-along + sqrt(max(along * along - excess, 0.0)), 0.0) * d_eye;
+    float reach = max(-along + sqrt(max(along * along - excess, 0.0)), 0.0);
+    vec3 at = p_eye + reach * d_eye;
     vec4 rims = rims_at(at.x);
+    softness_mm += 0.12 * reach;  // grazing rays meet lashes and a rounded edge, not a line
     float room = min(rims.x - at.y, at.y - rims.y);
     return smoothstep(-softness_mm, softness_mm, room);
 }

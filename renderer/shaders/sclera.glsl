@@ -41,6 +41,6 @@ vec3 sclera_radiance(Surface s) {
     float cosine = dot(n, turned_to_eye(u_sun_direction));
     vec3 wrapped = max((cosine + SCATTER_WRAP) / ((1.0 + SCATTER_WRAP) * (1.0 + SCATTER_WRAP)), 0.0);
     vec3 sun = u_sun_irradiance * s.sun * wrapped;
-    vec3 ambient = ambient_irradiance(turned_to_world(n)) * lid_shade(s.p_eye);
+    vec3 ambient = ambient_irradiance(turned_to_world(n)) * s.sky;
     return sclera_albedo(normalize(s.p_eye)) * (sun + ambient) / PI;
 }

@@ -7,7 +7,7 @@ uniform sampler2D u_thickness;         // of the four layers, mm
 uniform mat4x3 u_sigma_s;              // per layer, mm^-1
 uniform mat4x3 u_sigma_t;
 uniform vec4 u_anisotropy;
-uniform vec3 u_subsurface_gain;        // of single scattering; the colour map sets the level
+uniform vec3 u_subsurface_gain;        // makes the mean column's single scattering white
 uniform float u_multiple_share;        // of the reflectance, left to multiple scattering
 
 // Henyey and Greenstein 1941.
@@ -118,9 +118,10 @@ vec3 single_scattering(IrisTexel texel, ViewRay ray, IrisLight light) {
     return march_pieces(m);
 }
 
-// The same march stands for the sky's light too, as if it came from the sun's direction.
+// Share of the map's reflectance that this path through the layers returns. The same march stands
+// for the sky's light too, as if it came from the sun's direction.
 vec3 iris_reflectance(IrisTexel texel, ViewRay ray, IrisLight light) {
     if (SUBSURFACE < HIGH) return texel.albedo;
     vec3 single = PI * u_subsurface_gain * single_scattering(texel, ray, light);
-    return iris_extent(length(ray.x_mm)) * single + u_multiple_share * texel.albedo;
+    return texel.albedo * mix(single, vec3(1.0), u_multiple_share);
 }

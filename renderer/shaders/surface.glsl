@@ -14,6 +14,7 @@ struct Surface {
     vec3 v_eye;      // unit, towards the camera
     float cornea;    // 1 clear cornea .. 0 opaque sclera
     float sun;       // share of the sun that reaches it
+    vec3 sky;        // share of the sky that it sees past the lids
 };
 
 vec3 world_from_eye(vec3 p_eye) { return (u_eye_to_world * vec4(p_eye, 1.0)).xyz; }
@@ -33,6 +34,12 @@ void front_profile(float r, out float height, out float slope) {
     float weight = 0.5 * (1.0 + (cornea - globe) / q);
     height = 0.5 * (cornea + globe + q);
     slope = -weight * r / (R - p * sag) - (1.0 - weight) * r / globe + 0.5 * k * k_slope / q;
+}
+
+// What sun (a) and sky (rgb) reach a point of the globe's front, from the clip's own map.
+uniform sampler2D u_shade_map;
+vec4 shade_at(vec3 p_eye) {
+    return textureLod(u_shade_map, 0.5 + 0.5 * p_eye.xy / GLOBE_RADIUS_MM, 0.0);
 }
 
 // How clear the tissue over a point is: the sclera overlaps the cornea by about a millimetre, and
