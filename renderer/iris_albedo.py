@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.iris_angles import closed_noise, over_angle
+from renderer.iris_angles import closed_noise
 from renderer.iris_layout import IRIS_RADIUS_MM, Array, IrisLayout, Spots
 from renderer.iris_plane import HALF_SIZE_MM, Plane, blur
 from renderer.iris_relief import Relief
@@ -54,7 +54,7 @@ def core_share(plane: Plane, relief: Relief, look: Family, seed: int) -> Field:
     rng = np.random.Generator(np.random.PCG64([seed, 0xC04E]))
     share, wide = rng.uniform(0.45, 1.15), rng.uniform(0.7, 1.25)
     wavy *= np.float32(wide)
-    reach = over_angle(np.maximum(look.core_mm * wavy, 0.2).astype(np.float32), plane.angle)
+    reach = plane.around(np.maximum(look.core_mm * wavy, 0.2).astype(np.float32))
     outward = (plane.radius_mm - plane.pupil_mm) / reach
     ragged = outward + np.float32(0.20) * relief.streaks + np.float32(0.22) * relief.patches
     central = np.float32(min(look.core_share * share, 0.9)) * smoothstep(1.35, 0.35, ragged)
@@ -130,9 +130,9 @@ def _freckle(
     )
     window = (rows, columns)
     distance = np.hypot(plane.x_mm[window] - x, plane.y_mm[window] - y) / radius
-    edge = distance + 0.16 * relief.streaks[window] + 0.25 * relief.patches[window]
-    share = np.float32(0.75) * smoothstep(1.15, 0.55, edge)
-    tone = np.exp2(np.float32(0.5) * (relief.tone[window] - np.float32(0.45)))
+    edge = distance + 0.22 * relief.streaks[window] + 0.25 * relief.patches[window]
+    share = np.float32(0.65) * smoothstep(1.3, 0.3, edge)
+    tone = np.exp2(np.float32(1.2) * (relief.tone[window] - np.float32(0.45)))
     for channel, value in enumerate(srgb_to_linear(look.pigment)):
         part = planes[channel][window]
         part += (np.float32(value) * tone - part) * share
@@ -147,9 +147,9 @@ def _pupil(planes: Array, plane: Plane, seed: int) -> None:
     """Add the ruff, a beaded edge of the pigment epithelium, and the pupil inside it."""
     inside = plane.radius_mm - plane.pupil_mm
     width = np.float32(0.075) + np.float32(0.022) * closed_noise(64, seed, 31)
-    ruff = np.float32(0.92) * smoothstep(1.25, 0.75, inside / over_angle(width, plane.angle))
+    ruff = np.float32(0.92) * smoothstep(1.25, 0.75, inside / plane.around(width))
     beads = np.clip(0.75 + 0.35 * closed_noise(84, seed, 32), 0.3, 1.6).astype(np.float32)
-    bead = over_angle(beads, plane.angle)
+    bead = plane.around(beads)
     hole = smoothstep(0.012, -0.012, inside)
     shade = np.float32(0.55) + np.float32(0.45) * smoothstep(0.0, 0.20, inside)
     for channel, (brown, black) in enumerate(zip(srgb_to_linear(RUFF), IPE_ALBEDO, strict=True)):

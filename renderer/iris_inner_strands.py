@@ -47,7 +47,7 @@ def pupillary_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
 def collarette_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
     """Return the collarette: broken cords that follow the zigzag and weave about it."""
     rng = np.random.Generator(np.random.PCG64([seed, 0xC0]))
-    count, key = 150, seed * 16 + 10
+    count, key = 70, seed * 16 + 10
     span = np.clip(rng.exponential(0.10, count), 0.05, 0.5)
     first = rng.uniform(0, 2 * np.pi, count)
     # These runs go along the angle; the ring's radius of about 3.4 mm turns it into lengths.
@@ -62,7 +62,7 @@ def collarette_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
     ring = over_angle(layout.collarette_mm, angle)
     radius = ring + (layout.collarette_mm.mean() - ring) * (1.0 - follows) * 0.7 + shift
     ends = taper(runs, reach=0.22, scale=3.4)
-    crest = rng.uniform(0.26, 0.60, count).astype(np.float32)[run]
+    crest = rng.uniform(0.20, 0.52, count).astype(np.float32)[run]
     crest += 0.10 * noise_1d(run, angle / np.float32(0.06), key + 22)
     return polar_tubes(
         radius,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.iris_angles import angle_between, over_angle
+from renderer.iris_angles import angle_between
 from renderer.iris_layout import Crypts, IrisLayout
 from renderer.iris_plane import HALF_SIZE_MM, Plane
 from renderer.noise import Field, noise_grid
@@ -43,8 +43,8 @@ def furrow_mask(plane: Plane, layout: IrisLayout) -> Field:
     mask = np.zeros_like(plane.radius_mm)
     furrows = layout.furrows
     for i in range(furrows.half_width_mm.size):
-        centre = over_angle(furrows.radius_mm[i], plane.angle)
-        strength = over_angle(furrows.strength[i], plane.angle)
+        centre = plane.around(furrows.radius_mm[i])
+        strength = plane.around(furrows.strength[i])
         across = (plane.radius_mm - centre) / furrows.half_width_mm[i]
         # Steeper towards the pupil: the outer lip hangs over.
         across = across * np.where(across < 0.0, np.float32(1.3), np.float32(0.7))

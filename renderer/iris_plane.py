@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 from scipy import ndimage
 
 from renderer.iris_angles import over_angle
@@ -17,19 +18,26 @@ from renderer.noise import Field
 
 # Half the side of the square that the maps cover: the iris's radius and 0.15 mm of margin.
 HALF_SIZE_MM: Final = 6.0
+# Curves over the angle are read by sector: 1.1 micrometres wide at the root, a fifth of a texel.
+SECTORS: Final = 32768
 
 
 @dataclass(frozen=True)
 class Plane:
-    """The texels' coordinates: radius in mm, angle in radians, zone curves at each texel."""
+    """The texels' coordinates: radius in mm, angle in radians, sector, zone curves."""
 
     size_px: int
     x_mm: Field
     y_mm: Field
     radius_mm: Field
     angle: Field
+    sector: npt.NDArray[np.intp]
     pupil_mm: Field
     collarette_mm: Field
+
+    def around(self, curve: Field) -> Field:
+        """Read a closed curve of samples over the angle at every texel."""
+        return np.asarray(_fine(curve)[self.sector])
 
     @property
     def radius01(self) -> Field:
@@ -50,15 +58,24 @@ def iris_plane(layout: IrisLayout, size_px: int) -> Plane:
     x = np.broadcast_to(line.astype(np.float32)[None, :], (size_px, size_px))
     y = np.broadcast_to(line.astype(np.float32)[:, None], (size_px, size_px))
     angle = np.arctan2(y, x)
+    turns = np.mod(angle * np.float32(0.5 / np.pi), np.float32(1.0))
+    sector = np.minimum((turns * np.float32(SECTORS)).astype(np.intp), SECTORS - 1)
     return Plane(
         size_px=size_px,
         x_mm=x,
         y_mm=y,
         radius_mm=np.sqrt(x * x + y * y),
         angle=angle,
-        pupil_mm=over_angle(layout.pupil_mm, angle),
-        collarette_mm=over_angle(layout.collarette_mm, angle),
+        sector=sector,
+        pupil_mm=np.asarray(_fine(layout.pupil_mm)[sector]),
+        collarette_mm=np.asarray(_fine(layout.collarette_mm)[sector]),
     )
+
+
+def _fine(curve: Field) -> Field:
+    """Return a closed curve's values in the middle of SECTORS sectors."""
+    middle = (np.arange(SECTORS) + 0.5) / SECTORS * (2.0 * np.pi)
+    return over_angle(curve, middle.astype(np.float32))
 
 
 def blur(field: Field, sigma_mm: float, size_px: int) -> Field:
