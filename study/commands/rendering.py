@@ -49,7 +49,8 @@ class Rendering:
                 "why. Starting again tries again."
             )
         else:
-            self._say_once(f"All {found.total} clips are ready; people can take part.")
+            all_clips = "The clip is" if found.total == 1 else f"All {found.total} clips are"
+            self._say_once(f"{all_clips} ready; people can take part.")
 
     def say(self, line: str) -> None:
         """Print a line without breaking the bar."""
