@@ -172,16 +172,18 @@ def shown_clips(ratings: pd.DataFrame, comparisons: pd.DataFrame) -> list[ShownC
     Ratings without an eye or its partner tell of no pairing and are counted as a pair of equals
     only if they say so.
     """
+    known = ratings[ratings["other_lod"].notna() & ratings["eye"].notna()]
+    is_left = known["eye"] == "left"
+    eyes = known.assign(
+        left_lod=known["lod"].where(is_left, known["other_lod"]),
+        right_lod=known["other_lod"].where(is_left, known["lod"]),
+    )
+    columns = ["distance", "clip", "left_lod", "right_lod"]
     seen: dict[tuple[str, str], ShownClip] = {}
-    for row in comparisons[~comparisons["is_practice"]].itertuples():
-        clip = ShownClip(str(row.clip), str(row.distance), str(row.left_lod), str(row.right_lod))
-        seen.setdefault((clip.distance, clip.clip), clip)
-    known = ratings[~ratings["is_practice"] & ratings["other_lod"].notna() & ratings["eye"].notna()]
-    for row in known.itertuples():
-        lods = (str(row.lod), str(row.other_lod))
-        left, right = lods if row.eye == "left" else lods[::-1]
-        clip = ShownClip(str(row.clip), str(row.distance), left, right)
-        seen.setdefault((clip.distance, clip.clip), clip)
+    for rows in (comparisons, eyes):
+        shown = rows.loc[~rows["is_practice"], columns].drop_duplicates()
+        for distance, clip, left, right in shown.astype(str).itertuples(index=False, name=None):
+            seen.setdefault((distance, clip), ShownClip(clip, distance, left, right))
     return sorted(seen.values(), key=lambda clip: natural(clip.clip))
 
 

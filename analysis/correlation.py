@@ -7,7 +7,9 @@ tie as no preference, and the repeated-measures correlation (parallel lines, one
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
 from typing import Final
 
 import numpy as np
@@ -24,53 +26,74 @@ ALL_DISTANCES: Final = "all"
 
 @dataclass(frozen=True)
 class Concordance:
-    """How one person's ratings order with the LoDs' ranks, counted over pairs of ratings."""
+    """How ratings order with the LoDs' ranks within each person, counted over pairs of ratings.
 
-    concordant: int = 0
-    discordant: int = 0
-    tied_in_rating: int = 0
-    tied_in_rank: int = 0
+    Every field is an array (n_people,).
+    """
 
-    def __add__(self, other: Concordance) -> Concordance:
-        return Concordance(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
-
-    @property
-    def has_ranks(self) -> bool:
-        """Whether any two of the ratings were of different rank."""
-        return self.untied + self.tied_in_rating > 0
+    concordant: Floats
+    discordant: Floats
+    tied_in_rating: Floats
+    tied_in_rank: Floats
 
     @property
-    def untied(self) -> int:
+    def untied(self) -> Floats:
         """Pairs that differ in rank and in rating."""
         return self.concordant + self.discordant
 
     @property
-    def tau_b(self) -> float:
-        """Kendall's tau-b; nan without spread in ranks or in ratings."""
-        x = self.untied + self.tied_in_rating
-        y = self.untied + self.tied_in_rank
-        gap = self.concordant - self.discordant
-        return gap / float(np.sqrt(x * y)) if x and y else float("nan")
+    def of_different_rank(self) -> Floats:
+        """Pairs that differ in rank."""
+        return self.untied + self.tied_in_rating
 
     @property
-    def somers_d(self) -> float:
+    def tau_b(self) -> Floats:
+        """Kendall's tau-b; nan without spread in ranks or in ratings."""
+        norm = np.sqrt(self.of_different_rank * (self.untied + self.tied_in_rank))
+        return _ratio(self.concordant - self.discordant, norm)
+
+    @property
+    def somers_d(self) -> Floats:
         """Somers' d of rating given rank: (higher - lower) / pairs of different rank."""
-        x = self.untied + self.tied_in_rating
-        return (self.concordant - self.discordant) / x if x else float("nan")
+        return _ratio(self.concordant - self.discordant, self.of_different_rank)
 
 
-def count_pairs(rank: ArrayLike, rating: ArrayLike) -> Concordance:
-    """Count concordant, discordant and tied pairs of one person's ratings."""
-    x, y = np.asarray(rank, dtype=float), np.asarray(rating, dtype=float)
-    upper = np.triu_indices(x.size, 1)
-    dx = np.sign(x[:, None] - x[None, :])[upper]
-    dy = np.sign(y[:, None] - y[None, :])[upper]
+def count_pairs(person: ArrayLike, rank: ArrayLike, rating: ArrayLike) -> Concordance:
+    """Count concordant, discordant and tied pairs of ratings within each person, in their order.
+
+    Persons are numbers from 0. Works on counts of each rank with each rating, so its cost grows
+    with the number of ratings and not with that of pairs.
+    """
+    own = np.asarray(person, dtype=np.intp)
+    _, a = np.unique(np.asarray(rank, dtype=float), return_inverse=True)
+    _, s = np.unique(np.asarray(rating, dtype=float), return_inverse=True)
+    shape = tuple(int(index.max(initial=-1)) + 1 for index in (own, a, s))
+    place = np.ravel_multi_index((own, a, s), shape) if own.size else own
+    counts = np.bincount(place, minlength=math.prod(shape)).reshape(shape).astype(float)
+    above = _beyond(counts)  # ratings of higher rank and higher rating than each cell
+    below = _beyond(counts[:, :, ::-1])[:, :, ::-1]  # of higher rank and lower rating
+    per_rating, per_rank = counts.sum(axis=1), counts.sum(axis=2)
+    same = (counts**2).sum(axis=(1, 2))
     return Concordance(
-        concordant=int((dx * dy > 0).sum()),
-        discordant=int((dx * dy < 0).sum()),
-        tied_in_rating=int(((dx != 0) & (dy == 0)).sum()),
-        tied_in_rank=int(((dx == 0) & (dy != 0)).sum()),
+        concordant=(counts * above).sum(axis=(1, 2)),
+        discordant=(counts * below).sum(axis=(1, 2)),
+        tied_in_rating=((per_rating**2).sum(axis=1) - same) / 2,
+        tied_in_rank=((per_rank**2).sum(axis=1) - same) / 2,
     )
+
+
+def _beyond(counts: Floats) -> Floats:
+    """Sum, for every cell of (person, rank, rating), the cells that lie higher in both."""
+    total = counts[:, ::-1, ::-1].cumsum(axis=1).cumsum(axis=2)[:, ::-1, ::-1]
+    beyond: Floats = np.zeros_like(counts)
+    beyond[:, :-1, :-1] = total[:, 1:, 1:]
+    return beyond
+
+
+def _ratio(numerator: Floats, denominator: Floats) -> Floats:
+    result: Floats = np.full(numerator.shape, np.nan)
+    np.divide(numerator, denominator, out=result, where=denominator > 0)
+    return result
 
 
 def person_concordance(ratings: pd.DataFrame) -> pd.DataFrame:
@@ -81,29 +104,39 @@ def person_concordance(ratings: pd.DataFrame) -> pd.DataFrame:
     (pairs), tau_b, somers_d. Someone whose ratings are all alike has an empty tau_b.
     """
     rows = answered(ratings[ratings["lod_rank"].notna()])
-    counted: dict[tuple[str, str], tuple[Concordance, int]] = {}
+    people, labels = pd.factorize(rows["participant"])
+    n_people = len(labels)
+    total = Concordance(*(np.zeros(n_people) for _ in range(4)))
+    asked = np.zeros(n_people)
+    parts = []
     for distance in distance_order(rows):
-        for person, own in rows[rows["distance"] == distance].groupby("participant", sort=False):
-            pairs = count_pairs(own["lod_rank"].astype(float), own["rating"])
-            if pairs.has_ranks:  # else only one LoD: nothing was asked of this person here
-                counted[distance, str(person)] = (pairs, len(own))
-                before, number = counted.get((ALL_DISTANCES, str(person)), (Concordance(), 0))
-                counted[ALL_DISTANCES, str(person)] = (before + pairs, number + len(own))
-    order = [*distance_order(rows), ALL_DISTANCES]
-    table = [
+        is_here = (rows["distance"] == distance).to_numpy(dtype=bool)
+        own, index = np.unique(people[is_here], return_inverse=True)
+        here = rows[is_here]
+        pairs = count_pairs(index, here["lod_rank"].astype(float), here["rating"])
+        has_ranks = pairs.of_different_rank > 0  # with one LoD nothing was asked of this person
+        number = np.bincount(index, minlength=own.size).astype(float)
+        parts.append(_as_table(distance, labels[own], number, pairs)[has_ranks])
+        for name in (field.name for field in fields(Concordance)):
+            getattr(total, name)[own] += getattr(pairs, name)
+        asked[own] += np.where(has_ranks, number, 0)
+    everything = _as_table(ALL_DISTANCES, labels, asked, total)
+    return pd.concat([*parts, everything[asked > 0]], ignore_index=True)
+
+
+def _as_table(
+    distance: str, people: Iterable[object], number: Floats, pairs: Concordance
+) -> pd.DataFrame:
+    return pd.DataFrame(
         {
             "distance": distance,
-            "participant": person,
-            "ratings": number,
-            "untied": pairs.untied,
+            "participant": pd.Series(list(people), dtype="string"),
+            "ratings": number.astype(int),
+            "untied": pairs.untied.astype(int),
             "tau_b": pairs.tau_b,
             "somers_d": pairs.somers_d,
         }
-        for (distance, person), (pairs, number) in counted.items()
-    ]
-    table.sort(key=lambda row: order.index(str(row["distance"])))
-    columns = ["distance", "participant", "ratings", "untied", "tau_b", "somers_d"]
-    return pd.DataFrame(table, columns=columns)
+    )
 
 
 def mean_tau(tau: ArrayLike, untied: ArrayLike) -> tuple[float, float, float]:

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from typing import Final
 
+import numpy as np
 import pandas as pd
 
-from analysis.descriptive import answered
 from analysis.reading import Tables
 from analysis.wording import percent
 
@@ -45,19 +45,33 @@ def people_overview(tables: Tables) -> pd.DataFrame:
     Columns: participant, ratings, missing, mean, lowest and highest (ratings at the ends of the
     scale), distinct (different ratings used), median_response_s.
     """
-    ratings = tables.ratings[~tables.ratings["is_practice"]]
+    rows = tables.ratings[~tables.ratings["is_practice"]]
     low, high = tables.scale
-    rows = []
-    for person, own in ratings.groupby("participant", sort=True):
-        given = answered(own)["rating"]
-        row = {"participant": person, "ratings": len(given), "missing": len(own) - len(given)}
-        row |= {"mean": given.mean() if len(given) else float("nan")}
-        row |= {"lowest": int((given == low).sum()), "highest": int((given == high).sum())}
-        seconds = own["response_ms"].dropna().astype(float).median() / 1000
-        row |= {"distinct": given.nunique(), "median_response_s": seconds}
-        rows.append(row)
-    columns = ["participant", "ratings", "missing", "mean", "lowest", "highest", "distinct"]
-    return pd.DataFrame(rows, columns=[*columns, "median_response_s"])
+    rating = rows["rating"].astype("Float64").to_numpy(dtype=float, na_value=np.nan)
+    response_s = rows["response_ms"].astype("Float64").to_numpy(dtype=float, na_value=np.nan) / 1000
+    cells = pd.DataFrame(
+        {
+            "participant": rows["participant"].to_numpy(),
+            "rating": rating,
+            "missing": np.isnan(rating),
+            "lowest": rating == low,
+            "highest": rating == high,
+            "response_s": response_s,
+        }
+    )
+    return (
+        cells.groupby("participant", sort=True)
+        .agg(
+            ratings=("rating", "count"),
+            missing=("missing", "sum"),
+            mean=("rating", "mean"),
+            lowest=("lowest", "sum"),
+            highest=("highest", "sum"),
+            distinct=("rating", "nunique"),
+            median_response_s=("response_s", "median"),
+        )
+        .reset_index()
+    )
 
 
 def quality_statements(tables: Tables) -> list[str]:
