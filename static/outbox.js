@@ -104,6 +104,7 @@ export class Outbox {
         body: JSON.stringify(body),
         keepalive: true,
       });
+      await answer.arrayBuffer(); // the whole answer, or else it did not arrive
       if (answer.ok && !answer.redirected) return true;
       if (!NEVER.has(answer.status)) return false;
       this.options.onRefused(entry, answer);

@@ -68,11 +68,12 @@ export class Player {
     const style = this.video.style;
     style.width = `${width / ratio}px`;
     style.height = `${height / ratio}px`;
-    this.stage.style.height = `${Math.ceil(height / ratio) + 1}px`;
+    // At least the whole window: while a clip runs nothing but its surround is to be seen.
+    this.stage.style.height = `${Math.ceil(Math.max(height / ratio + 1, innerHeight))}px`;
     const stage = this.stage.getBoundingClientRect();
     const toGrid = (origin, offset) => (Math.round((origin + offset) * ratio) - origin * ratio) / ratio;
     style.left = `${toGrid(stage.left, (stage.width - width / ratio) / 2)}px`;
-    style.top = `${toGrid(stage.top + scrollY, 0)}px`;
+    style.top = `${toGrid(stage.top + scrollY, (stage.height - height / ratio) / 2)}px`;
   }
 
   /** True where the whole clip is inside the window at its own size. */
@@ -90,7 +91,7 @@ export class Player {
       return;
     }
     this.layOut();
-    this.stage.scrollIntoView({ block: this.stage.offsetHeight < innerHeight ? "center" : "start" });
+    this.stage.scrollIntoView({ block: "start" });
     this.state = "starting";
     this.begin();
     try {

@@ -11,6 +11,7 @@ export function startPreparing(main, { clips, start }) {
   const meter = main.querySelector("progress");
   const button = form.querySelector("button");
   let isOpen = true;
+  let wanted = [];
   for (const part of main.querySelectorAll("[data-retry]")) part.addEventListener("click", load);
   form.addEventListener("submit", begin);
   wait();
@@ -56,7 +57,6 @@ export function startPreparing(main, { clips, start }) {
     }
   }
 
-  let wanted = [];
   async function load(list) {
     wanted = Array.isArray(list) ? list : wanted;
     show("loading");

@@ -29,11 +29,10 @@ from study.site.access import (
 from study.site.browsers import browser_family
 from study.site.forms import answers_in, first, question_rows, read_form
 from study.site.place import Here
-from study.site.signatures import is_simulation_token
+from study.site.signatures import SIMULATION_HEADER, is_simulation_token
 
 router = APIRouter(default_response_class=HTMLResponse)
 
-SIMULATION_HEADER: Final = "X-Ocularist-Simulation"
 DRAFTED: Final = "drafted"
 QUESTIONNAIRE_S: Final = 45  # for one clip's questions, by our own trials
 AROUND_S: Final = 150  # for everything before and after the clips

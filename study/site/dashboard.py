@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from datetime import datetime
-from typing import Any
+from typing import Any, Final
 
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, Response
@@ -16,6 +16,16 @@ from study.site.access import ResearcherHere, ResearchersForm, SignedIn, redirec
 from study.site.place import Here
 
 router = APIRouter(default_response_class=HTMLResponse)
+STEP_WORDS: Final = {
+    "consent": "reading the consent",
+    "about": "about themselves",
+    "instructions": "reading the instructions",
+    "preparing": "waiting for clips",
+    "practice": "practice clip",
+    "trial": "rating clips",
+    "thanks": "completed",
+    "withdrawn": "withdrawn",
+}
 
 
 def frame(study: Study, researcher: SignedIn, section: str, heading: str) -> dict[str, Any]:
@@ -28,6 +38,7 @@ def frame(study: Study, researcher: SignedIn, section: str, heading: str) -> dic
         "heading": heading,
         "ago": ago,
         "duration": duration,
+        "step_words": STEP_WORDS,
     }
 
 

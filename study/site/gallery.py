@@ -90,9 +90,10 @@ def one(here: Here, researcher: ResearcherHere, clip_id: str) -> Response:
         raise HTTPException(404)
     study = here.study()
     name = shown.wanted.clip.id
+    heading = name.capitalize() if shown.is_practice else f"Clip {name}"
     return here.page(
         "researcher/clip.html",
-        **frame(study, researcher, "/clips", f"Clip {name}"),
+        **frame(study, researcher, "/clips", heading),
         shown=shown,
         levels=_levels(shown),
         facts=_facts(shown),

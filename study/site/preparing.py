@@ -70,6 +70,8 @@ def _wait(here: Here, visitor: Visitor, screen: Screen) -> str:
     """Say in calm words how long the nearest complete set of clips takes."""
     definition = visitor.study.definition
     nearest = _nearest(here, visitor, arms.fitting_sizes(definition, screen))
+    if nearest is not None and nearest.failed:
+        return "Something holds the clips up. The researcher can see it; please come back later."
     if nearest is None or nearest.left_s is None:
         return "We cannot say yet how long it takes."
     if nearest.left_s < 60:

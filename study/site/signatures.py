@@ -11,6 +11,7 @@ from typing import Final
 
 from itsdangerous import BadSignature, URLSafeTimedSerializer
 
+SIMULATION_HEADER: Final = "X-Ocularist-Simulation"
 SIGN_IN_S: Final = 12 * 3600  # a researcher's working day
 SIMULATION_S: Final = 24 * 3600
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+import shutil
 import socket
 import threading
 from collections.abc import Callable, Iterator
@@ -88,7 +89,9 @@ class Site:
         return {"X-Ocularist-Simulation": simulation_token(self.settings.secret_key())}
 
 
-def put_clips(site_folder: Path, definition: StudyDefinition, make: Callable[[int], bytes]) -> None:
+def fill_shelf(
+    site_folder: Path, definition: StudyDefinition, make: Callable[[int], bytes]
+) -> None:
     """Put a tiny video for every clip of a study on the shelf, with its manifest."""
     site_folder.mkdir(parents=True, exist_ok=True)
     manifest = Manifest()
@@ -140,9 +143,20 @@ def are_clips_ready() -> bool:
     return True
 
 
+@pytest.fixture(scope="session")
+def fresh_database(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An empty database with one researcher, made once: tables and password hashes take time."""
+    path = tmp_path_factory.mktemp("database") / "study.sqlite3"
+    db = open_database(str(path))
+    researchers.add(db, "ada", PASSWORD)
+    db.close()
+    return path
+
+
 @pytest.fixture
 def site(
     tmp_path: Path,
+    fresh_database: Path,
     definition: StudyDefinition,
     make_video: Callable[[int], bytes],
     are_clips_ready: bool,
@@ -153,16 +167,27 @@ def site(
         database_url=f"sqlite:///{tmp_path}/study.sqlite3",
         media_folder=tmp_path / "clips",
     )
+    shutil.copy(fresh_database, tmp_path / "study.sqlite3")
     db = open_database(settings.database_url)
     study = studies.register(db, definition)
     jobs.enqueue(db, definition.wanted_specs())
     if are_clips_ready:
-        put_clips(settings.media_folder, definition, make_video)
+        fill_shelf(settings.media_folder, definition, make_video)
         finish_jobs(db)
-    researchers.add(db, "ada", PASSWORD)
     with serving(settings, study) as url:
         yield Site(url, db, study, settings)
     db.close()
+
+
+@pytest.fixture
+def put_clips(make_video: Callable[[int], bytes]) -> Callable[[Site], None]:
+    """Return what renders a site's clips, so to speak."""
+
+    def put(site: Site) -> None:
+        fill_shelf(site.settings.media_folder, site.study.definition, make_video)
+        finish_jobs(site.db)
+
+    return put
 
 
 class serving:  # noqa: N801 - a context manager, used like a function

@@ -1,0 +1,134 @@
+"""Waiting for clips, serving them, and what happens when one is missing."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from study.data import events, export, jobs, participants
+from study.data.quality import quality
+from study.site.media import ClipShelf
+
+STATE = "/preparing/state?screen_width_px=1920&screen_height_px=1080"
+
+
+def first_clip(guest: Any) -> dict[str, Any]:
+    found: dict[str, Any] = guest.client.get(STATE).json()["clips"][0]
+    return found
+
+
+@pytest.mark.parametrize("are_clips_ready", [False])
+def test_someone_who_comes_too_early_waits_calmly_and_goes_on(
+    site: Any, guest: Any, put_clips: Any
+) -> None:
+    assert "The clips are still being made" in guest.walk_to_preparing().text
+    news = guest.client.get(STATE).json()
+    assert news == {
+        "fits": True,
+        "is_ready": False,
+        "progress": 0.0,
+        "wait": "We cannot say yet how long it takes.",
+        "clips": [],
+    }
+    guest.post("/preparing", screen_width_px="1920", screen_height_px="1080")
+    assert guest.at == "/preparing"
+    put_clips(site)
+    assert guest.client.get(STATE).json()["is_ready"] is True
+    guest.post("/preparing", screen_width_px="1920", screen_height_px="1080")
+    assert guest.at == "/trial/1"
+
+
+@pytest.mark.parametrize("are_clips_ready", [False])
+def test_a_clip_that_fails_is_told_without_jargon(site: Any, guest: Any) -> None:
+    guest.walk_to_preparing()
+    for _ in range(jobs.MAX_ATTEMPTS):
+        job = jobs.claim(site.db, worker="w")
+        assert job is not None
+        jobs.fail(site.db, job, worker="w", error="GL went away")
+    assert guest.client.get(STATE).json()["wait"].startswith("Something holds the clips up.")
+
+
+def test_a_screen_too_small_for_every_size_is_told(guest: Any) -> None:
+    guest.walk_to_preparing()
+    small = "/preparing/state?screen_width_px=300&screen_height_px=1080"
+    assert guest.client.get(small).json()["fits"] is False
+
+
+def test_screens_that_cannot_be_are_refused(guest: Any) -> None:
+    guest.walk_to_preparing()
+    answer = guest.client.get("/preparing/state?screen_width_px=-1&screen_height_px=x")
+    assert answer.status_code == 422
+    assert answer.json() == {"code": "NOT-READABLE"}
+
+
+def test_clips_are_served_whole_and_by_ranges(guest: Any) -> None:
+    guest.walk_to_preparing()
+    clip = first_clip(guest)
+    whole = guest.client.get(clip["url"])
+    assert whole.status_code == 200
+    assert len(whole.content) == clip["bytes"]
+    assert whole.headers["content-type"] == "video/mp4"
+    assert whole.headers["cache-control"] == "public, max-age=31536000, immutable"
+    part = guest.client.get(clip["url"], headers={"Range": "bytes=0-1"})
+    assert part.status_code == 206
+    assert part.content == whole.content[:2]
+    assert part.headers["content-range"] == f"bytes 0-1/{clip['bytes']}"
+
+
+def test_nothing_but_clips_is_served_as_a_clip(guest: Any) -> None:
+    for name in ("unknown", "..%2Fmanifest", "manifest"):
+        assert guest.client.get(f"/clips/{name}.mp4").status_code == 404
+    assert guest.client.get("/clips/manifest.json").status_code == 404
+
+
+def test_a_page_tells_nothing_of_the_condition(site: Any, guest: Any) -> None:
+    words = re.compile(
+        r"\b(ultra|low|macroscopic|lod|texture|refraction|caustics|tessellation|sclera|rightward)\b",
+        re.IGNORECASE,
+    )
+    guest.walk_to_trial()
+    for position in (1, 2, 3):
+        assert guest.at == f"/trial/{position}"
+        told = guest.page.text + str(guest.page.headers)
+        clip = guest.client.get(guest.data("clip"))
+        told += str(clip.headers) + clip.content.decode("latin-1")
+        assert words.findall(told) == []
+        clip_ids = [wanted.spec.clip_id for wanted in site.study.definition.wanted_specs()]
+        assert not any(clip_id in told for clip_id in clip_ids)
+        guest.watch()
+        guest.finish()
+
+
+def test_a_missing_clip_stops_visibly_and_the_dashboard_knows(site: Any, guest: Any) -> None:
+    guest.walk_to_trial()
+    for path in site.settings.media_folder.glob("*.mp4"):
+        path.unlink()
+    page = guest.get("/trial/1")
+    assert page.status_code == 503
+    assert "This clip is not ready" in page.text
+    assert "Please wait a minute and try again." in page.text
+    assert "CLIP-MISSING P-" in page.text
+    [problem] = quality(site.db, site.study).problems
+    assert (problem.code, problem.position) == ("CLIP-MISSING", 1)
+
+
+def test_a_file_of_another_length_is_no_clip(site: Any) -> None:
+    shelf = ClipShelf(site.settings.media_folder)
+    clip_id = site.study.definition.wanted_specs()[0].spec.clip_id
+    record = shelf.record(clip_id)
+    assert record is not None
+    (site.settings.media_folder / record.file).write_bytes(b"cut off")
+    assert shelf.record(clip_id) is None
+
+
+def test_a_play_that_was_interrupted_is_kept_and_does_not_unlock(site: Any, guest: Any) -> None:
+    guest.walk_to_trial()
+    guest.watch(is_complete=False, was_hidden=True)
+    assert guest.finish(rating_left="2").status_code == 422
+    name = export.tables(site.db, site.study).participants["participant"][0]
+    person = participants.by_public_id(site.db, site.study, name)
+    assert person is not None
+    plays = [e for e in events.history(site.db, person) if e.kind == "played"]
+    assert [play.payload["was_hidden"] for play in plays] == [True]
