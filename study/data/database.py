@@ -47,7 +47,7 @@ class Database:
         self.engine = engine
         self.now = clock
         self.cache: dict[int, Any] = {}
-        self._reading_engine = engine.execution_options(is_reading=True)
+        self._reading_engine = _reading(engine)
         self._session: ContextVar[tuple[Session, bool] | None] = ContextVar("session", default=None)
 
     @contextmanager
@@ -95,7 +95,8 @@ def open_database(url: str, *, clock: Clock = utc_now) -> Database:
         engine = _engine(parsed)
         _migrate(engine)
     except DBAPIError as error:
-        raise DatabaseError(f"{name}: cannot be opened ({error.orig})") from None
+        reason = " ".join(str(error.orig).split())
+        raise DatabaseError(f"{name}: cannot be opened ({reason})") from None
     except CommandError as error:
         raise DatabaseError(
             f"{name}: its tables were made by another version of Ocularist ({error})"
@@ -133,6 +134,13 @@ def _engine(url: URL) -> Engine:
     event.listen(engine, "connect", _set_up_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine
+
+
+def _reading(engine: Engine) -> Engine:
+    if engine.dialect.name == "sqlite":
+        return engine.execution_options(is_reading=True)
+    # Elsewhere every statement would see its own moment; one state for all of them is promised.
+    return engine.execution_options(isolation_level="REPEATABLE READ")
 
 
 def _set_up_sqlite(connection: Any, _record: Any) -> None:

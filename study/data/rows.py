@@ -1,0 +1,141 @@
+"""The rows of the tables: what one participant's trials and answers say, column by column.
+
+Pure: from what ``study.data.collection`` has read to plain values. Missing is None, never zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import datetime
+from typing import Any, Final
+
+from renderer.detail import lod_rank
+from study.data import devices
+from study.data.collection import Collected, CollectedTrial
+from study.data.devices import plausible
+from study.data.progress import early_step
+from study.data.studies import Study
+from study.data.trials import ANSWERED, PLAYED
+from study.data.views import is_certified
+from study.design.definition import StudyDefinition
+from study.design.parts import read_size
+from study.design.pixels import median_iris_px
+
+Row = dict[str, Any]
+COMPLETED: Final = "completed"
+
+
+def _who(study: Study, person: Collected) -> Row:
+    return {
+        "study": study.key,
+        "study_version": study.version,
+        "simulated": person.row.simulated,
+        "participant": person.row.public_id,
+    }
+
+
+def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row:
+    """Return what the two tables about trials share."""
+    trial, row = collected.trial, person.row
+    plays = [e.payload for e in collected.events if e.kind == PLAYED and e.payload["is_complete"]]
+    clip = study.definition.clip(trial.clip)
+    return {
+        **_who(study, person),
+        "session": f"{row.public_id}-{collected.sitting}" if collected.sitting else None,
+        "trial": f"{row.public_id}-{trial.position:02d}",
+        "position": trial.number,
+        "clip": trial.clip,
+        "distance": clip.distance,
+        "shown_scale": _last(plays, "shown_scale"),
+        "orbit_direction": row.orbit_direction,
+        "is_practice": trial.is_practice,
+        "is_catch": clip.is_catch,
+        "certified": _certified(plays),
+        "dropped_frames": _total(plays, "dropped_frames"),
+        "views": trial.views,
+        "response_ms": _response_ms(collected),
+        "started_at": _iso(trial.started_at),
+        "_iris_px": _iris_px(study.definition, person, collected),
+    }
+
+
+def rating_rows(
+    definition: StudyDefinition, shared: Row, collected: CollectedTrial
+) -> Iterator[Row]:
+    clip = definition.clip(collected.trial.clip)
+    lods = {"left": clip.left, "right": clip.right}
+    for eye, other, index in (("left", "right", 0), ("right", "left", 1)):
+        yield {
+            **shared,
+            "iris_px": shared["_iris_px"][index],
+            "eye": eye,
+            "lod": lods[eye],
+            "lod_rank": lod_rank(lods[eye]),
+            "other_lod": lods[other],
+            **definition.detail(lods[eye]).levels(),
+            "rating": collected.trial.answers.get(f"rating_{eye}"),
+        }
+
+
+def comparison_row(definition: StudyDefinition, shared: Row, collected: CollectedTrial) -> Row:
+    clip = definition.clip(collected.trial.clip)
+    return {
+        **shared,
+        "iris_px": round(sum(shared["_iris_px"]) / 2, 2),
+        "left_lod": clip.left,
+        "right_lod": clip.right,
+        **collected.trial.answers,
+    }
+
+
+def participant_row(study: Study, person: Collected) -> Row:
+    row = person.row
+    step = early_step(row, study.definition)
+    done = sum(c.trial.is_complete and not c.trial.is_practice for c in person.trials)
+    return {
+        **_who(study, person),
+        "started_at": _iso(row.consented_at),
+        "completed_at": _iso(row.completed_at),
+        "status": COMPLETED if row.completed_at else step or f"{done} trials",
+        **person.about,
+        **{name: person.device.get(name) for name in devices.COLUMNS},
+        "arm": f"{row.size} {row.orbit_direction}" if row.size else None,
+    }
+
+
+def _iris_px(
+    definition: StudyDefinition, person: Collected, collected: CollectedTrial
+) -> tuple[float, float]:
+    clip = definition.clip(collected.trial.clip)
+    spec = definition.clip_spec(
+        clip,
+        size=read_size(person.row.size or ""),
+        orbit_direction=person.row.orbit_direction or "",
+    )
+    return median_iris_px(spec)
+
+
+def _response_ms(collected: CollectedTrial) -> int | None:
+    finals = [e.payload for e in collected.events if e.kind == ANSWERED and e.payload["is_final"]]
+    found = plausible(finals[-1].get("response_ms")) if finals else None
+    return None if found is None else round(found)
+
+
+def _certified(plays: Sequence[Mapping[str, Any]]) -> bool | None:
+    """Return True if one play passed the rule, None if nobody counted the frames of any."""
+    verdicts = [verdict for play in plays if (verdict := is_certified(play)) is not None]
+    return any(verdicts) if verdicts else None
+
+
+def _last(plays: Sequence[Mapping[str, Any]], name: str) -> float | None:
+    values = [value for play in plays if (value := plausible(play.get(name))) is not None]
+    return values[-1] if values else None
+
+
+def _total(plays: Sequence[Mapping[str, Any]], name: str) -> int | None:
+    values = [value for play in plays if (value := plausible(play.get(name))) is not None]
+    return round(sum(values)) if values else None
+
+
+def _iso(moment: datetime | None) -> str | None:
+    return None if moment is None else moment.isoformat(timespec="milliseconds")
