@@ -5,12 +5,10 @@ from __future__ import annotations
 import sys
 import time
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
     from tqdm import tqdm
-
-BAR_FORMAT: Final = "{desc} {bar} {postfix}"
 
 
 class ClipBar:
@@ -25,8 +23,7 @@ class ClipBar:
         self._began: tuple[float, float] | None = None
         self._bar: tqdm[Any] = tqdm(
             total=total,
-            desc=title,
-            bar_format=BAR_FORMAT,
+            bar_format=f"{title} {{bar}} {{desc}}",
             disable=not sys.stderr.isatty(),
             leave=False,
         )
@@ -56,7 +53,7 @@ class ClipBar:
         state = f"{done:.1f} of {self._total} clips" + time_left(left_s)
         if not self._bar.disable:
             self._bar.n = min(done, self._total)
-            self._bar.set_postfix_str(state)
+            self._bar.set_description_str(state)
         elif int(done) > self._told:
             self._told = int(done)
             print(f"{self._title}: {state}", file=sys.stderr, flush=True)
