@@ -67,7 +67,7 @@ export class ClipStore {
         return await this.fetchOnce(job);
       } catch (error) {
         this.progress(job.url, 0);
-        if (attempt === TRIES) throw error;
+        if (attempt === TRIES || error.isFinal) throw error;
         await new Promise((resolve) => setTimeout(resolve, PAUSES_MS[attempt - 1]));
       }
     }
@@ -78,7 +78,11 @@ export class ClipStore {
     let timer = setTimeout(() => controller.abort(), STALL_MS);
     try {
       const answer = await fetch(url, { signal: controller.signal });
-      if (!answer.ok) throw new Error(`HTTP-${answer.status}`);
+      if (!answer.ok) {
+        // "Not there" does not change within seconds: let the participant decide when to try again.
+        const isFinal = answer.status >= 400 && answer.status < 500;
+        throw Object.assign(new Error(`HTTP-${answer.status}`), { isFinal });
+      }
       const parts = [];
       let count = 0;
       for (const reader = answer.body.getReader(); ; ) {

@@ -1,0 +1,301 @@
+"""The pages in a real Chromium: clips that play, answers that survive whatever happens."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+
+from study.data import completion, events, export, participants, trials
+
+WAIT_MS = 30_000  # a loaded machine is no failure
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    """One browser for all tests here; it ends with this module."""
+    expect.set_options(timeout=WAIT_MS)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path="/usr/bin/chromium",
+            args=["--no-sandbox", "--disable-dev-shm-usage"],
+        )
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def context(chromium: Browser) -> Iterator[BrowserContext]:
+    """A browser that nobody has used, on a screen with 1.5 device pixels per CSS pixel."""
+    screen: Any = {"width": 900, "height": 640}
+    one = chromium.new_context(viewport=screen, screen=screen, device_scale_factor=1.5)
+    one.set_default_timeout(WAIT_MS)
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def page(context: BrowserContext, site: Any) -> Iterator[Page]:
+    """A page that notes every request to anywhere else and every error in a script."""
+    one = context.new_page()
+    foreign: list[str] = []
+    errors: list[str] = []
+    one.on("request", lambda r: None if is_own(r.url, site.url) else foreign.append(r.url))
+    one.on("pageerror", lambda error: errors.append(str(error)))
+    yield one
+    assert foreign == []
+    assert errors == []
+
+
+def is_own(address: str, site_url: str) -> bool:
+    return address.startswith((f"{site_url}/", f"blob:{site_url}/"))
+
+
+def walk_to_preparing(page: Page, url: str) -> None:
+    page.goto(url)
+    page.get_by_role("link", name="Begin").click()
+    for box in page.get_by_role("checkbox").all():
+        box.check()
+    page.get_by_role("button", name="I agree and want to take part").click()
+    page.get_by_label("How old are you?").fill("33")
+    page.get_by_role("button", name="Continue").click()
+    page.get_by_role("button", name="I am ready").click()
+
+
+def walk_to_trial(page: Page, url: str) -> None:
+    walk_to_preparing(page, url)
+    page.get_by_role("button", name="Start with the whole screen").click()
+    expect(page).to_have_url(f"{url}/trial/1")
+
+
+def state(page: Page, name: str) -> None:
+    """Wait until the stage is in a state."""
+    expect(page.locator(".stage")).to_have_attribute("data-state", name)
+
+
+def watch(page: Page) -> None:
+    page.get_by_role("button", name="Play the clip").click()
+    state(page, "watched")
+
+
+def rate(page: Page, left: int, right: int) -> None:
+    page.locator(f"input[name=rating_left][value='{left}']").check()
+    page.locator(f"input[name=rating_right][value='{right}']").check()
+    page.locator("input[name=comparison][value='1']").check()
+    page.locator("input[name=noticed][value=no]").check()
+
+
+def saved(page: Page, text: str) -> None:
+    expect(page.locator(".saved [role=status]")).to_have_text(text)
+
+
+def the_participant(site: Any) -> participants.Participant:
+    [name] = export.tables(site.db, site.study).participants["participant"]
+    found = participants.by_public_id(site.db, site.study, name)
+    assert found is not None
+    return found
+
+
+def test_a_session_survives_reload_back_double_click_and_a_lost_connection(
+    site: Any, page: Page, context: BrowserContext
+) -> None:
+    walk_to_trial(page, site.url)
+    state(page, "ready")
+    expect(page.locator("input[name=rating_left]").first).to_be_disabled()
+    watch(page)
+    shown = page.locator("video").bounding_box()
+    assert shown is not None
+    assert shown["width"] * 1.5 == pytest.approx(320, abs=0.05)
+    # Layout counts in 1/64 CSS px; what is painted is the nearest whole device pixel.
+    assert shown["x"] * 1.5 == pytest.approx(round(shown["x"] * 1.5), abs=0.05)
+
+    # Answers given, then the page is reloaded: same trial, same answers, still unlocked.
+    rate(page, 2, 4)
+    saved(page, "Saved")
+    page.reload()
+    expect(page).to_have_url(f"{site.url}/trial/1")
+    state(page, "watched")
+    expect(page.locator("input[name=rating_left][value='2']")).to_be_checked()
+
+    # A double click on the button finishes one trial, not two.
+    page.get_by_role("button", name="Save and go to the next clip").dblclick()
+    expect(page).to_have_url(f"{site.url}/trial/2")
+
+    # Back leads to the present trial.
+    page.go_back()
+    page.goto(f"{site.url}/instructions")
+    expect(page).to_have_url(f"{site.url}/trial/2")
+
+    # Without a connection answers wait in the browser, say so, and arrive later.
+    state(page, "ready")
+    watch(page)
+    context.set_offline(True)
+    rate(page, 1, 5)
+    saved(page, "Not yet saved – kept in this browser, trying again")
+    page.get_by_role("button", name="Save and go to the next clip").click()
+    expect(page).to_have_url(f"{site.url}/trial/2")
+    context.set_offline(False)
+    expect(page).to_have_url(f"{site.url}/trial/3")
+
+    state(page, "ready")
+    watch(page)
+    rate(page, 3, 3)
+    page.get_by_role("button", name="Finish").click()
+    code = completion.code(site.db, the_participant(site)) if at_thanks(page, site) else None
+    assert code is not None
+    expect(page.locator("#completion-code")).to_have_text(code)
+
+    tables = export.tables(site.db, site.study)
+    ratings = tables.ratings.sort_values(["trial", "eye"])
+    assert list(ratings["rating"]) == [2, 4, 1, 5, 3, 3]
+    assert list(tables.comparisons["views"]) == [1, 1, 1]
+    assert list(tables.ratings["shown_scale"].unique()) == [1.0]
+    assert (tables.comparisons["response_ms"] > 0).all()
+    finals = [
+        e
+        for e in events.history(site.db, the_participant(site))
+        if e.kind == "answered" and e.payload["is_final"]
+    ]
+    assert [e.position for e in finals] == [1, 2, 3]
+    kinds = {e.kind for e in events.history(site.db, the_participant(site))}
+    assert "amended" not in kinds
+
+
+def at_thanks(page: Page, site: Any) -> bool:
+    expect(page).to_have_url(f"{site.url}/thanks")
+    return True
+
+
+def test_every_frame_is_counted_for_every_play(site: Any, page: Page) -> None:
+    walk_to_trial(page, site.url)
+    watch(page)
+    page.get_by_role("button", name="Watch again").first.click()
+    page.wait_for_function("document.querySelector('.stage').dataset.state === 'playing'")
+    state(page, "watched")
+    saved(page, "Saved")
+    plays = [
+        e.payload for e in events.history(site.db, the_participant(site)) if e.kind == "played"
+    ]
+    assert len(plays) == 2
+    for play in plays:
+        assert play["expected_frames"] == 15
+        assert 0 < play["presented_frames"] + play["dropped_frames"] <= 16
+        assert play["is_complete"] is True
+        assert play["device_pixel_ratio"] == 1.5
+        assert play["shown_scale"] == 1.0
+
+
+def test_a_covered_page_interrupts_the_play(site: Any, page: Page) -> None:
+    walk_to_trial(page, site.url)
+    state(page, "ready")
+    # Tabs of a headless browser are never hidden: say it as the browser would.
+    page.evaluate(
+        """() => new MutationObserver(() => {
+            if (document.querySelector(".stage").dataset.state !== "playing") return;
+            Object.defineProperty(document, "hidden", { value: true, configurable: true });
+            document.dispatchEvent(new Event("visibilitychange"));
+            delete document.hidden;
+        }).observe(document.querySelector(".stage"), { attributes: true })"""
+    )
+    page.get_by_role("button", name="Play the clip").click()
+    state(page, "interrupted")
+    expect(page.locator("input[name=rating_left]").first).to_be_disabled()
+    saved(page, "Saved")
+    [trial] = trials.all_trials(site.db, the_participant(site))[:1]
+    assert trial.views == 0
+
+
+def test_a_broken_clip_stops_with_a_code_and_a_next_step(site: Any, page: Page) -> None:
+    walk_to_trial(page, site.url)
+    page.route("**/clips/*.mp4", lambda route: route.fulfill(status=404))
+    page.reload()
+    state(page, "broken")
+    expect(page.locator(".card[data-when=broken] .code")).to_have_text(
+        re.compile(r"^P-[0-9A-Z]{8}-1-HTTP-404$")
+    )
+    saved(page, "Saved")
+    page.unroute("**/clips/*.mp4")
+    page.locator(".card[data-when=broken]").get_by_role("button", name="Try again").click()
+    state(page, "ready")
+    problems = [
+        e.payload for e in events.history(site.db, the_participant(site)) if e.kind == "problem"
+    ]
+    assert problems == [{"code": "CLIP-HTTP-404"}]
+
+
+def test_a_cut_off_clip_is_not_shown(site: Any, page: Page) -> None:
+    walk_to_preparing(page, site.url)
+    page.get_by_role("button", name="Start with the whole screen").wait_for()
+    page.route("**/clips/*.mp4", lambda route: route.fulfill(status=416))
+    page.reload()
+    expect(page.get_by_text("A clip did not arrive.")).to_be_visible()
+    expect(page.locator("[data-code]")).to_have_text("LOAD-HTTP-416")
+    page.unroute("**/clips/*.mp4")
+    page.get_by_role("button", name="Try again").click()
+    expect(page.get_by_role("button", name="Start with the whole screen")).to_be_visible()
+
+
+@pytest.mark.parametrize("are_clips_ready", [False])
+def test_the_waiting_page_goes_on_by_itself(site: Any, page: Page, put_clips: Any) -> None:
+    walk_to_preparing(page, site.url)
+    expect(page.get_by_text("The clips are still being made.")).to_be_visible()
+    put_clips(site)
+    expect(page.get_by_role("button", name="Start with the whole screen")).to_be_visible()
+
+
+def test_questions_can_be_answered_with_the_keyboard_alone(site: Any, page: Page) -> None:
+    walk_to_trial(page, site.url)
+    state(page, "ready")
+    page.get_by_role("button", name="Play the clip").press("Enter")
+    state(page, "watched")
+    expect(page.get_by_role("button", name="Answer the questions")).to_be_focused()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Space")
+    expect(page.locator("input[name=comparison][value='1']")).to_be_checked()
+    page.keyboard.press("ArrowDown")
+    expect(page.locator("input[name=comparison][value='-1']")).to_be_checked()
+    saved(page, "Saved")
+    page.get_by_role("button", name="Save and go to the next clip").press("Enter")
+    note = page.locator("[data-open-note]")
+    expect(note).to_be_focused()
+    expect(note).to_contain_text("3 questions are still open.")
+    page.get_by_role("button", name="Save and go to the next clip").press("Enter")
+    expect(page).to_have_url(f"{site.url}/trial/2")
+
+
+def test_a_shared_computer_waits_for_the_last_answers(
+    site: Any, page: Page, context: BrowserContext
+) -> None:
+    walk_to_trial(page, site.url)
+    watch(page)
+    page.route("**/events", lambda route: route.abort())
+    page.locator("input[name=rating_left][value='5']").check()
+    saved(page, "Not yet saved – kept in this browser, trying again")
+    page.goto(f"{site.url}/next")
+    expect(page.get_by_text("are still on their way")).to_be_visible()
+    expect(page.get_by_role("button", name="Start for a new person")).to_be_disabled()
+    page.unroute("**/events")
+    expect(page.get_by_text("All answers of the last person are stored.")).to_be_visible()
+    page.get_by_role("button", name="Start for a new person").click()
+    expect(page.get_by_role("link", name="Begin")).to_be_visible()
+    assert context.cookies() == []
+    found = trials.at(site.db, the_participant(site), 1)
+    assert found is not None
+    assert found.answers["rating_left"] == 5
+
+
+def test_the_dashboard_renews_itself(site: Any, page: Page) -> None:
+    page.goto(f"{site.url}/researcher")
+    page.get_by_label("Name").fill("ada")
+    page.get_by_label("Password").fill("correct horse battery")
+    page.get_by_role("button", name="Sign in").click()
+    expect(page.locator("#people dd").first).to_have_text("0")
+    person = site.guest()
+    person.agree()
+    person.client.close()
+    expect(page.locator("#people dd").first).to_have_text("1")
+    expect(page.locator("[data-stamp]")).to_contain_text("As of")
