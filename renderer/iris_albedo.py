@@ -93,7 +93,7 @@ def _ridge_light(plane: Plane, relief: Relief) -> Field:
     crest = np.exp(-(((beyond - np.float32(0.02)) / np.float32(0.14)) ** 2))
     moat = np.exp(-(((beyond + np.float32(0.30)) / np.float32(0.16)) ** 2))
     broken = np.clip(np.float32(0.7) + np.float32(0.5) * relief.patches, 0.0, 1.4)
-    return np.asarray((np.float32(0.20) * crest - np.float32(0.12) * moat) * broken)
+    return np.asarray((np.float32(0.27) * crest - np.float32(0.13) * moat) * broken)
 
 
 def _balanced_gain(plane: Plane, lift: Field) -> Field:

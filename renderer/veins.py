@@ -39,10 +39,10 @@ class Growth:
 
 
 # Tortuous trees and hairs in the conjunctiva; straighter, wider ones in the episclera underneath.
-# Trees stop 1 mm before the limbus (at 6.12 mm of arc), where the arcades stand alone.
+# Trees fade out 1 mm before the limbus (at 6.12 mm of arc), where the arcades stand alone.
 CONJUNCTIVAL: Final = Growth((0.75, 0.50), (0.85, 0.26), 0.50, 4, 0.70, 0.8, 7.2)
 EPISCLERAL: Final = Growth((0.35, 0.15), (1.80, 0.50), 0.30, 3, 0.75, 1.0, 6.9)
-ARCADE: Final = Growth((0.50, 0.50), (0.40, 0.15), 0.90, 2, 0.90, 0.0, 6.12)
+ARCADE: Final = Growth((0.50, 0.50), (0.40, 0.15), 0.90, 2, 0.90, 0.0, 4.5)
 CAPILLARY: Final = Growth((0.90, 0.70), (0.50, 0.16), 0.60, 2, 0.85, 0.3, 6.9)
 
 
@@ -65,14 +65,18 @@ def grow(shoots: Shoots, growth: Growth, seed: int) -> Tubes:
     for generation in range(growth.generations):
         if shoots.x_mm.size == 0:
             break
-        tubes, heading = _extend(shoots, growth, seed * 8 + generation)
+        tubes, heading = _extend(shoots, growth, seed * 8 + generation, emerges=generation == 0)
         parts.append(tubes)
         shoots = _branch(tubes, heading, growth, rng)
     return join_tubes(parts)
 
 
-def _extend(shoots: Shoots, growth: Growth, key: int) -> tuple[Tubes, Array]:
-    """Walk all shoots at once; return their tubes and each point's heading."""
+def _extend(shoots: Shoots, growth: Growth, key: int, *, emerges: bool) -> tuple[Tubes, Array]:
+    """Walk all shoots at once; return their tubes and each point's heading.
+
+    Shoots that emerge come up from the depth: they begin faint, without a blunt end. All fade
+    before the distance where they stop.
+    """
     count = shoots.x_mm.size
     steps = np.maximum((shoots.length_mm / STEP_MM).astype(np.int64), 8)
     longest = int(steps.max())
@@ -100,8 +104,9 @@ def _extend(shoots: Shoots, growth: Growth, key: int) -> tuple[Tubes, Array]:
     alive &= np.minimum.accumulate(radius, axis=0) > growth.stop_mm
     along = np.arange(longest)[:, None] / steps
     swell = 1.0 + 0.15 * noise_1d(lines, np.broadcast_to(position / 0.5, turn.shape), key * 4 + 3)
-    # A trunk comes up from the depth, so it has no blunt beginning; a branch has none anyway.
-    surfacing = np.clip(0.2 + position / 0.9, 0.0, 1.0)
+    surfacing = np.clip((radius - growth.stop_mm) / 1.2, 0.0, 1.0)
+    if emerges:
+        surfacing = surfacing * np.clip(position / np.minimum(1.6, 0.3 * shoots.length_mm), 0, 1)
     shrink = (1.0 - 0.45 * along) * swell
     keep = alive.T
     tubes = Tubes(
