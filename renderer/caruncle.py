@@ -32,7 +32,7 @@ def caruncle() -> tuple[Floats, Indices, Floats, Floats]:
     near, under = _ease((a - 0.40) / 0.42), _ease((a - 0.8) / 0.2)
     points[..., 2] = height * (1 - near) + (globe + 0.12 + 0.5 * plica - 0.6 * under) * near
     pink = np.clip(1.25 * hump, 0, 1).ravel()
-    return points.reshape(-1, 3), _quads(), pink, _ease((a - 0.45) / 0.5).ravel()
+    return points.reshape(-1, 3), _quads(), pink, _ease((a - 0.30) / 0.32).ravel()
 
 
 def outer_membrane() -> tuple[Floats, Indices, Floats]:

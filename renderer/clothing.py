@@ -41,7 +41,7 @@ def sweater(body: Figure) -> Garment:
     points = _loosen(body.vertices_mm[used], quads)
     rest = mesh.vertices_mm[used]
     carried = np.column_stack([points, rest])
-    carried, quads = subdivide(carried, quads, levels=2)
+    carried, quads = subdivide(carried, quads)
     triangles = triangles_of(quads)
     points = carried[:, :3]
     return Garment(points, vertex_normals(points, triangles), triangles, _knit(carried[:, 3:]))
@@ -67,7 +67,7 @@ def _loosen(points: Floats, quads: Indices) -> Floats:
     normals = vertex_normals(points, triangles_of(quads))
     loose = points + normals * (LOOSENESS_MM - 3.0 * neck)
     above = np.maximum(loose[:, 1] - COLLAR_MM, 0.0)
-    loose[:, 1] -= 0.85 * above
+    loose[:, 1] -= 0.96 * above
     return np.asarray(loose)
 
 

@@ -69,7 +69,7 @@ def hair_cap(face: FaceMesh) -> HairCap:
     points, normals = scalp.points_mm, scalp.normals
     above = inside_hairline(points)
     is_ear = _is_ear(points)
-    lift = THICKNESS_MM * _ease((above - 3.0) / 26.0)
+    lift = THICKNESS_MM * _ease((above - 2.0) / 38.0)
     chosen = (above[scalp.triangles] > -6.0).all(axis=1) & ~is_ear[scalp.triangles].any(axis=1)
     used, rows = np.unique(scalp.triangles[chosen], return_inverse=True)
     rows, above = rows.reshape(-1, 3), above[used]
@@ -85,12 +85,12 @@ def hair_cap(face: FaceMesh) -> HairCap:
 
 def _is_ear(points: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
-    return np.asarray((x > 70.5) & (y < 16.0) & (y > -60.0) & (z > -125.0) & (z < -60.0))
+    return np.asarray((x > 72.0) & (y < 5.0) & (y > -60.0) & (z > -125.0) & (z < -60.0))
 
 
 def _ease(x: Floats) -> Floats:
     x = np.clip(x, 0.0, 1.0)
-    return np.asarray(np.sqrt(x * (2 - x)))
+    return np.asarray(x * x * (3 - 2 * x))
 
 
 def _comb(points: Floats, normals: Floats) -> Floats:

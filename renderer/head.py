@@ -28,7 +28,7 @@ from renderer.lids import LidRims
 from renderer.light import Light
 from renderer.makehuman import Floats, Indices
 from renderer.program import build_program
-from renderer.skin import TILE_MM, TILE_PX, detail_coordinates, paint, pore_tile
+from renderer.skin import SCALP, TILE_MM, TILE_PX, detail_coordinates, paint, pore_tile
 from renderer.skin_light import SkinLight, light_skin
 from renderer.sky_visibility import Region, look_up, sky_visibility
 from renderer.strand_buffers import StrandMesh
@@ -84,7 +84,7 @@ class Head:
         skin.set(**common, u_pores=self._pores, u_pore_level=level)
         for mesh in self._skin.close if distance < CLOSE_MM else self._skin.distant:
             mesh.draw(skin, clip)
-        fabric.set(**common, u_knit=self._knit, u_knit_level=max(0.0, np.log2(35.0 / density)))
+        fabric.set(**common, u_knit=self._knit, u_knit_level=max(0.0, np.log2(60.0 / density)))
         self._cloth.mesh.draw(fabric, clip)
         self._cap.mesh.draw(skin, clip)
 
@@ -165,7 +165,17 @@ class Head:
             }
         )
         cloth = self._cloth.garment
-        self._cloth.write_light(lit(cloth.points_mm, cloth.normals, cloth.triangles, "cloth"))
+        shaded = replace(light.sky, sun_irradiance=np.zeros(3))
+        self._cloth.write_light(
+            light_skin(
+                cloth.points_mm,
+                cloth.normals,
+                cloth.triangles,
+                sky=shaded,
+                open_sky=self._open_sky["cloth"],
+                sun=np.zeros(len(cloth.points_mm)),
+            )
+        )
         cap = self._cap.cap
         self._cap.write_light(lit(cap.points_mm, cap.normals, cap.triangles, "cap"))
         self._lit_by = light
@@ -239,15 +249,15 @@ class _Cap:
         rows = [
             self.cap.points_mm,
             self.cap.normals,
-            np.tile(np.array(HAIR_COLOUR) * 0.5, (count, 1)),
+            np.tile(np.array(HAIR_COLOUR) * SCALP, (count, 1)),
             np.zeros((count, 5)),
         ]
         self.mesh = CellMesh(gl, np.column_stack(rows), self.cap.triangles)
 
     def write_light(self, light: SkinLight) -> None:
-        """Replace the baked light; the cap lies in the shade of the ribbons and has no shine."""
+        """Replace the baked light; the ribbons shine, not the mass beneath."""
         zero = np.zeros(len(light.sun))
-        dull = SkinLight(light.diffuse, 0.2 * light.ambient, zero)
+        dull = SkinLight(light.diffuse, 0.3 * light.ambient, zero)
         self.mesh.write_light(_lit_rows(dull, gloss=zero, wet=zero))
 
 

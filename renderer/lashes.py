@@ -18,7 +18,7 @@ LOWER_COUNT: Final = 80
 BROW_COUNT: Final = 760
 LASH_POINTS: Final = 8
 BROW_POINTS: Final = 6
-LASH_COLOUR: Final = (0.010, 0.0065, 0.005)
+LASH_COLOUR: Final = (0.018, 0.011, 0.008)
 BROW_COLOUR: Final = (0.030, 0.018, 0.011)
 # The brow's middle line from nose to temple: x, y, half width in mm, direction of growth in degrees
 # above the way to the temple.
@@ -50,7 +50,7 @@ def grow_lashes(lid: LidPatch, rng: np.random.Generator) -> Strands:
     lower = _lash_row(lid, rng, is_upper=False, count=LOWER_COUNT)
     points = np.concatenate([upper, lower])
     width = np.concatenate(
-        [rng.uniform(0.07, 0.11, len(upper)), rng.uniform(0.04, 0.07, len(lower))]
+        [rng.uniform(0.06, 0.10, len(upper)), rng.uniform(0.04, 0.07, len(lower))]
     )
     tone = rng.uniform(0.7, 1.5, size=(len(points), 1))
     return Strands(points, width, np.array(LASH_COLOUR) * tone)
@@ -69,8 +69,8 @@ def _lash_row(lid: LidPatch, rng: np.random.Generator, *, is_upper: bool, count:
     root -= 0.08 * root / np.linalg.norm(root, axis=1, keepdims=True)
     length = _lash_lengths(root[:, 0], rng, is_upper=is_upper)
     start, end = _lash_directions(root, rng, is_upper=is_upper)
-    bend = root + start * (0.52 * length)[:, None]
-    tip = bend + end * (0.52 * length)[:, None]
+    bend = root + start * (0.5 * length)[:, None]
+    tip = bend + end * (0.56 * length)[:, None]
     tip += _towards_clump(tip, rng)
     s = np.linspace(0, 1, LASH_POINTS)[None, :, None]
     curve = (1 - s) ** 2 * root[:, None] + 2 * s * (1 - s) * bend[:, None] + s**2 * tip[:, None]
@@ -101,14 +101,14 @@ def _lash_directions(
     """Return unit directions at the root and at the tip: forwards, fanning out, curling away."""
     count = len(root)
     fan = np.clip(root[:, 0] / 13.0 + 0.10, -1, 1) * (0.62 if is_upper else 0.5)
-    fan = fan + rng.normal(0, 0.15, count)
+    fan = fan + rng.normal(0, 0.13 if is_upper else 0.09, count)
     lift = rng.normal(0, 0.08, count)
     if is_upper:
-        first = np.column_stack([fan * 0.7, -0.05 + lift, np.full(count, 0.95)])
-        last = np.column_stack([fan * 1.1, 0.86 + lift, np.full(count, 0.62)])
+        first = np.column_stack([fan * 0.6, -0.02 + lift, np.full(count, 0.95)])
+        last = np.column_stack([fan * 1.25, 0.95 + lift, np.full(count, 0.45)])
     else:
         first = np.column_stack([fan * 0.8, -0.35 + lift, np.full(count, 0.85)])
-        last = np.column_stack([fan * 1.2, -0.46 + lift, np.full(count, 0.62)])
+        last = np.column_stack([fan * 1.3, -0.42 + lift, np.full(count, 0.62)])
     # Near the temple the whole fan turns sideways with the lid.
     turn = np.clip((root[:, 0] - 4.0) / 9.0, 0, 1)[:, None] * np.array([0.45, 0.0, -0.2])
     first, last = first + turn, last + turn

@@ -22,7 +22,7 @@ from renderer.optics import surface_height
 LATERAL_MM: Final = (12.6, 0.55)  # canthi, frontal plane: where the rims meet at the temple
 MEDIAL_MM: Final = (-16.6, -2.1)  # ... and beside the nose
 LATERAL_Z_MM: Final = 4.6
-MEDIAL_Z_MM: Final = 8.0
+MEDIAL_Z_MM: Final = 7.0
 CLEARANCE_MM: Final = 0.06  # tear film between rim and globe
 TUCK_MM: Final = 11.0  # radius of the patch's innermost ring
 MARGIN_MM: Final = 1.9  # lid thickness at the rim
@@ -106,8 +106,8 @@ def _bezier(t: Floats, *points: tuple[float, float]) -> Floats:
 def _rim_depth(xy: Floats) -> Floats:
     """Slide on the globe, cornea included, and leave it smoothly towards the canthi."""
     r = np.linalg.norm(xy, axis=1)
-    on_globe = globe_height(np.minimum(r, 11.0)) + CLEARANCE_MM
-    medial = _smooth((-xy[:, 0] - 6.5) / 7.5)
+    on_globe = globe_height(np.minimum(r, 10.8)) + CLEARANCE_MM
+    medial = _smooth((-xy[:, 0] - 7.5) / 8.5)
     lateral = _smooth((xy[:, 0] - 8.0) / 4.6)
     depth = on_globe * (1 - medial) + MEDIAL_Z_MM * medial
     return depth * (1 - lateral) + LATERAL_Z_MM * lateral

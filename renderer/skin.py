@@ -18,11 +18,12 @@ from renderer.hair import inside_hairline
 from renderer.lashes import BROW, BROW_COLOUR
 from renderer.makehuman import Floats
 
+SCALP: Final = 0.55  # what is dark between the hairs, as a share of their colour
 BASE: Final = (0.60, 0.375, 0.275)
-LIPS: Final = (0.46, 0.190, 0.170)
+LIPS: Final = (0.50, 0.235, 0.205)
 MARGIN: Final = (0.62, 0.340, 0.290)
 WET: Final = (0.60, 0.265, 0.235)
-SCLERA: Final = (0.66, 0.52, 0.46)  # seen through the conjunctiva in the corners
+SCLERA: Final = (0.72, 0.60, 0.54)  # seen through the conjunctiva in the corners
 CARUNCLE: Final = (0.64, 0.235, 0.200)
 # Tints: centre x, y in mm, radii in mm, factor of the albedo. Both sides alike unless x is 0.
 ZONES: Final = (
@@ -61,7 +62,7 @@ def _stubble(albedo: Floats, part: SkinPart) -> None:
     """Darken the scalp and the skin under the brows: roots too fine to be drawn."""
     above = inside_hairline(part.points_mm)
     scalp = np.clip((above + 2.0) / 8.0, 0, 1)[:, None]
-    albedo += 0.9 * scalp * (0.6 * np.array(HAIR_COLOUR) - albedo)
+    albedo += 0.9 * scalp * (SCALP * np.array(HAIR_COLOUR) - albedo)
     for eye in (0, 1):
         local = part.points_mm - eye_centre_mm(eye)
         x, y = local[:, 0] * (1.0 if eye else -1.0), local[:, 1]
@@ -123,7 +124,7 @@ def _relief(rng: np.random.Generator) -> Floats:
     coarse = _furrows(rng, cells=30)
     height = -0.010 * np.exp(-fine / 0.06) - 0.010 * np.exp(-coarse / 0.09)
     height += 0.006 * _blur_noise(rng, 0.08) + 0.012 * _blur_noise(rng, 0.5)
-    return np.asarray(height - 0.045 * _pores(rng, count=560))
+    return np.asarray(height - 0.030 * _pores(rng, count=560))
 
 
 def _furrows(rng: np.random.Generator, *, cells: int) -> Floats:
@@ -132,13 +133,14 @@ def _furrows(rng: np.random.Generator, *, cells: int) -> Floats:
     jitter = rng.uniform(0.1, 0.9, size=(cells, cells, 2))
     y, x = np.indices((TILE_PX, TILE_PX)) / px
     cell_x, cell_y = x.astype(int), y.astype(int)
-    nearest = np.full((2, TILE_PX, TILE_PX), 9.0)
+    nearest, second = np.full((2, TILE_PX, TILE_PX), 9.0)
     for dy in (-1, 0, 1):
         for dx in (-1, 0, 1):
             point = jitter[(cell_y + dy) % cells, (cell_x + dx) % cells]
             d = np.hypot(cell_x + dx + point[..., 0] - x, cell_y + dy + point[..., 1] - y)
-            nearest = np.sort(np.concatenate([nearest, d[None]]), axis=0)[:2]
-    return np.asarray((nearest[1] - nearest[0]) * (TILE_MM / cells))
+            second = np.minimum(second, np.maximum(nearest, d))
+            nearest = np.minimum(nearest, d)
+    return np.asarray((second - nearest) * (TILE_MM / cells))
 
 
 def _pores(rng: np.random.Generator, *, count: int) -> Floats:

@@ -21,7 +21,7 @@ from renderer.sky_visibility import DIRECTIONS, Visible, directions
 # does (after the diffusion profiles of d'Eon and Luebke 2007, GPU Gems 3, ch. 14).
 SCATTER_MM: Final = (1.5, 0.75, 0.5)
 SCATTERED: Final = (0.95, 0.85, 0.8)
-BOUNCE_ALBEDO: Final = (0.45, 0.26, 0.19)  # what the covered directions send: skin and sweater
+BOUNCE_ALBEDO: Final = (0.30, 0.20, 0.155)  # what the covered directions send: skin and sweater
 
 
 @dataclass(frozen=True)

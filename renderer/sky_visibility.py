@@ -90,7 +90,8 @@ class Region:
 def sky_visibility(gl: moderngl.Context, draw: Draw, regions: list[Region]) -> dict[str, Visible]:
     """Return for each mesh by name how free (n, DIRECTIONS) the directions are, 0 to 1.
 
-    A mesh may be named by several regions: the last that holds a point decides. Directions behind the surface count as closed. Points are lifted off their surface by a texel.
+    A mesh may be named by several regions: the last that holds a point decides. Directions behind
+    the surface count as closed. Points are lifted off their surface by a texel.
     """
     probe = DepthProbe(gl)
     names = {name: points for region in regions for name, (points, _) in region.meshes.items()}

@@ -31,7 +31,9 @@ void main() {
     float taper = 1.0 - 0.85 * in_ribbon.z * in_ribbon.z;
     float mean_alpha = min(1.5 * in_ribbon.y / u_pixel_mm, 1.0);
     bool is_drawn = in_ribbon.w * LEAST_ALPHA <= mean_alpha;
-    float alpha = max(mean_alpha, LEAST_ALPHA);
+    // Hairs wider than a pixel fade where they taper below it.
+    float tip = mean_alpha < 1.0 ? 1.0 : min(2.0 * in_ribbon.y * taper / pixel_mm, 1.0);
+    float alpha = max(mean_alpha * tip, LEAST_ALPHA);
     float half_mm = max(in_ribbon.y * taper, 0.5 * pixel_mm);
     v_world = in_position + across * (in_ribbon.x * half_mm);
     v_tangent = in_tangent;

@@ -35,7 +35,7 @@ void main() {
     vec3 n_detail = normalize(n - slope.x * t - slope.y * b);
 
     vec3 albedo = v_albedo * (1.0 + (pores.a - 0.5) * vec3(0.13, 0.20, 0.23) * dry);
-    albedo *= 1.0 - 0.3 * dry * (1.0 - pores.b);
+    albedo *= 1.0 - 0.2 * dry * (1.0 - pores.b);
     float cosine = max(dot(n_detail, u_sun_direction), 0.0);
     float change = cosine - max(dot(n, u_sun_direction), 0.0);
     vec3 diffuse = v_diffuse + u_sun_irradiance * (sun * change / PI) * SHARPNESS;

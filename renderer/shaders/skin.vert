@@ -16,6 +16,7 @@ uniform mat4 u_view_matrix;
 uniform mat4 u_projection;
 uniform vec3 u_camera_mm;
 
+out vec3 v_world;
 out vec3 v_normal;
 out vec3 v_half;      // between the view and the sun
 out vec3 v_albedo;
@@ -39,6 +40,7 @@ void main() {
         + wet * environment_fresnel(n_dot_v, 0.1, TEAR_F0));
     // Kelemen and Szirmay-Kalos 2001: visibility over the cosines is about 1 / (4 (l h)^2).
     float strength = sun * schlick(l_dot_h, SKIN_F0) / (4.0 * l_dot_h * l_dot_h);
+    v_world = in_position;
     v_normal = n;
     v_half = h;
     v_albedo = in_albedo;
