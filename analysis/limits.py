@@ -27,10 +27,11 @@ def limits(tables: Tables, audit: Audit) -> list[str]:
         "No LoD is shown to be equal to another. That needs a margin declared before the data were "
         'seen; "not shown to be rated lower" is not "equal".'
     )
-    text.append(
-        "Each eye was rated beside another one. Side by side, differences look larger than they "
-        "would in use, where both eyes have the same LoD."
-    )
+    if tables.ratings["other_lod"].notna().any():
+        text.append(
+            "Each eye was rated beside another one. Side by side, differences look larger than "
+            "they would in use, where both eyes have the same LoD."
+        )
     if tables.comparisons.empty:
         text.append(
             "There is no table of comparisons, so preferences and noticed differences are unknown."

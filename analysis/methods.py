@@ -17,13 +17,8 @@ _PACKAGES = ("numpy", "scipy", "pandas", "matplotlib")
 
 def methods(tables: Tables, costs: Costs | None = None) -> list[str]:
     """Return the paragraphs of the methods section."""
-    low, high = tables.scale
     paragraphs = [
-        f"Participants rated the realism of the left and the right eye of each clip from {low} "
-        f"(completely unrealistic) to {high} (almost or completely photorealistic), said which eye "
-        "was more realistic and whether they noticed anything missing or different. Left and right "
-        "are the viewer's. Missing answers were left out, never replaced; practice trials were "
-        "not analysed; nobody was excluded.",
+        _questions(tables),
         "Means are over people: repeated ratings of the same thing by one person were averaged "
         "first. Intervals of means and of differences within people are Student's t, "
         "m ± t(n−1; .975) s / √n; they are not given for fewer than two people or for values that "
@@ -46,6 +41,24 @@ def methods(tables: Tables, costs: Costs | None = None) -> list[str]:
         f"{_versions()} Nothing here is random, so no seed is needed. {_data(tables)}"
     )
     return paragraphs
+
+
+def _questions(tables: Tables) -> str:
+    low, high = tables.scale
+    text = (
+        f"Participants rated realism from {low} (completely unrealistic) to {high} (almost or "
+        "completely photorealistic)."
+    )
+    if len(tables.comparisons):
+        text += (
+            " They rated the left and the right eye of each clip, said which of the two was more "
+            "realistic, and whether they noticed anything missing or different. Left and right are "
+            "the viewer's."
+        )
+    return (
+        f"{text} Missing answers were left out, never replaced; practice trials were not analysed; "
+        "nobody was excluded."
+    )
 
 
 def _versions() -> str:

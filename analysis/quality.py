@@ -94,10 +94,22 @@ def quality_statements(tables: Tables) -> list[str]:
             f"Ratings of presentations that failed the study's rule, kept and counted: "
             f"{uncertified}."
         )
+    text += _unfinished(tables)
     text += _versions(counted)
     text += _use_of_scale(people_overview(tables), tables.scale)
     text += _unknown_people(tables)
     return text
+
+
+def _unfinished(tables: Tables) -> list[str]:
+    people = tables.participants
+    if people["completed_at"].isna().all():
+        return []
+    given = set(tables.ratings.loc[tables.ratings["rating"].notna(), "participant"])
+    unfinished = set(people.loc[people["completed_at"].isna(), "participant"]) & given
+    if not unfinished:
+        return []
+    return [f"People who have not finished, whose answers are counted: {len(unfinished)}."]
 
 
 def _versions(ratings: pd.DataFrame) -> list[str]:

@@ -60,3 +60,11 @@ def test_pooled_versions_and_unknown_people_are_said() -> None:
     text = quality_statements(data)
     assert "Several studies or versions are pooled: thesis 1; thesis 2." in text
     assert "Not in the table of participants: B." in text
+
+
+def test_unfinished_people_are_counted_and_said() -> None:
+    people = pd.DataFrame(
+        {"participant": ["A", "B", "C"], "completed_at": ["2026-01-31T09:30:00+00:00", None, None]}
+    )
+    data = tables([("A", "low", 1), ("B", "low", 2)], participants=people)
+    assert "People who have not finished, whose answers are counted: 1." in quality_statements(data)
