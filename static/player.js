@@ -65,15 +65,18 @@ export class Player {
   layOut() {
     const ratio = devicePixelRatio;
     const { width, height } = this.options;
-    const style = this.video.style;
-    style.width = `${width / ratio}px`;
-    style.height = `${height / ratio}px`;
     // At least the whole window: while a clip runs nothing but its surround is to be seen.
     this.stage.style.height = `${Math.ceil(Math.max(height / ratio + 1, innerHeight))}px`;
     const stage = this.stage.getBoundingClientRect();
-    const toGrid = (origin, offset) => (Math.round((origin + offset) * ratio) - origin * ratio) / ratio;
-    style.left = `${toGrid(stage.left, (stage.width - width / ratio) / 2)}px`;
-    style.top = `${toGrid(stage.top + scrollY, (stage.height - height / ratio) / 2)}px`;
+    // Browsers lay out in 1/64 pixel and round down: without the small addition 640 device pixels
+    // at a ratio of 1.5 become 639.98, and the whole clip is resampled.
+    const px = (device) => `${(device + 0.005) / ratio}px`;
+    const toGrid = (origin, offset) => Math.round((origin + offset) * ratio) - origin * ratio;
+    const style = this.video.style;
+    style.width = px(width);
+    style.height = px(height);
+    style.left = px(toGrid(stage.left, (stage.width - width / ratio) / 2));
+    style.top = px(toGrid(stage.top + scrollY, (stage.height - height / ratio) / 2));
   }
 
   /** True where the whole clip is inside the window at its own size. */
