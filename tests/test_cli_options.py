@@ -12,11 +12,11 @@ import pytest
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
 from study.cli import build_parser, main
+from study.commands.eye_options import spec_of
 from study.commands.listening import address_of, check_port, welcome
 from study.commands.progress import time_left
 from study.commands.render import wanted
 from study.commands.researcher import new_password
-from study.commands.still import spec_of
 from study.data import researchers
 from study.data.database import open_database
 from study.design.definition import read_definition

@@ -122,9 +122,9 @@ def test_a_started_command_ends_when_its_keeper_is_killed(tmp_path: Path) -> Non
     waiting.chmod(0o755)
     keeper = (
         "import os, signal, sys\n"
-        "from study.commands import processes\n"
-        "processes.sys.executable = sys.argv[1]\n"
-        "processes.start_command([])\n"
+        "from study.commands import starting\n"
+        "starting.sys.executable = sys.argv[1]\n"
+        "starting.start_command([])\n"
         "print('started', flush=True)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )

@@ -18,6 +18,8 @@ from threading import Timer
 
 import pytest
 
+from study.cli import main
+
 ROOT = Path(__file__).parent.parent
 LIMIT_S = 300.0  # for a busy machine; a whole run takes a few seconds
 
@@ -107,9 +109,9 @@ def running(study: Path, data: Path) -> Iterator[Running]:
     try:
         yield Running(process, f"http://127.0.0.1:{port}")
     finally:
-        watchdog.cancel()
-        process.kill()
+        process.terminate()  # in order, so that its children end too
         process.communicate()
+        watchdog.cancel()
 
 
 def is_alive(pid: int) -> bool:
@@ -144,7 +146,9 @@ def test_site_and_renderer_stand_beside_each_other(tiny_study: Path, tmp_path: P
         assert "stop" in (run.process.stdout.readline() if run.process.stdout else "")
 
 
-def test_a_clip_is_rendered_once_and_progress_is_told(tiny_study: Path, tmp_path: Path) -> None:
+def test_a_clip_is_rendered_once_and_shown_to_simulated_people(
+    tiny_study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     clips, ready = tmp_path / "data" / "clips", "The clip is ready; people can take part."
     with running(tiny_study, tmp_path / "data") as run:
         run.line_with(ready)
@@ -152,6 +156,16 @@ def test_a_clip_is_rendered_once_and_progress_is_told(tiny_study: Path, tmp_path
         assert run.process.wait(30) == 0
     (clip,) = clips.glob("*.mp4")
     rendered = clip.stat().st_mtime_ns
+
+    walk = ["simulate", str(tiny_study), "--through-site", "--participants", "2"]
+    assert main([*walk, "--data", str(tmp_path / "data")]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("2 simulated participants took thesis, version 1;")
+    assert main(["export", "--data", str(tmp_path / "data"), "--out", str(tmp_path / "out")]) == 0
+    rows = (tmp_path / "out" / "ratings.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) == 1 + 2 * 2  # two people, one clip, two eyes
+    assert all(row.startswith("thesis,1,true,") for row in rows[1:])
+
     with running(tiny_study, tmp_path / "data") as run:
         run.line_with(ready)
     assert clip.stat().st_mtime_ns == rendered

@@ -6,14 +6,10 @@ doubles with every end that follows soon; one that has run for a while starts af
 
 from __future__ import annotations
 
-import contextlib
-import ctypes
-import os
 import signal
 import subprocess
-import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Protocol
 
@@ -21,7 +17,6 @@ FIRST_WAIT_S: Final = 1.0
 LONGEST_WAIT_S: Final = 60.0
 STEADY_S: Final = 60.0  # a process that ran this long had a good start
 STOP_S: Final = 10.0  # time to end in order before it is killed
-_PR_SET_PDEATHSIG: Final = 1  # linux/prctl.h
 
 
 class Process(Protocol):
@@ -98,38 +93,3 @@ def stop_all(kept: Sequence[Kept]) -> None:
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
-
-
-def start_command(
-    arguments: Sequence[str],
-    *,
-    environment: Mapping[str, str] | None = None,
-    niceness: int = 0,
-) -> subprocess.Popen[bytes]:
-    """Start ``ocularist`` with these arguments as a process of its own.
-
-    ``environment`` adds to ours; secrets go there, because everybody can read arguments. The
-    process lives in its own session, so that Ctrl-C reaches its keeper alone, and ends with its
-    keeper even if that is killed.
-    """
-    end_with_parent = _end_with_parent()
-
-    def prepare() -> None:
-        end_with_parent()
-        os.nice(niceness)
-
-    return subprocess.Popen(
-        [sys.executable, "-m", "study", *arguments],
-        stdin=subprocess.DEVNULL,
-        env={**os.environ, **(environment or {})},
-        start_new_session=True,
-        preexec_fn=prepare,  # noqa: PLW1509 - the keeper has no threads
-    )
-
-
-def _end_with_parent() -> Callable[[], object]:
-    """Return what a child calls to be sent SIGTERM when its parent dies; Linux alone can."""
-    with contextlib.suppress(OSError, AttributeError):
-        prctl = ctypes.CDLL(None).prctl
-        return lambda: prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-    return lambda: None

@@ -75,21 +75,10 @@ def _start_site(
 
 
 def _kept(settings: Settings, study: str, *, say: Callable[[str], None]) -> list[Kept]:
-    from study.commands.processes import Kept, Process, start_command
+    from study.commands.processes import Kept
+    from study.commands.starting import start_rendering, start_serving
 
-    places = ["--data", str(settings.data_folder), "--media", str(settings.media_folder)]
-    listening = ["--host", settings.host, "--port", str(settings.port)]
-    if settings.tls_cert and settings.tls_key:
-        listening += ["--tls-cert", str(settings.tls_cert), "--tls-key", str(settings.tls_key)]
-    commands = {
-        "site": ["serve", study, "--quiet", *places, *listening],
-        "renderer": ["worker", *places],
-    }
-    # A database's URL may hold a password, so it is no argument.
-    environment = {"OCULARIST_DATABASE": settings.database_url}
-
-    def starter(name: str) -> Callable[[], Process]:
-        niceness = NICENESS if name == "renderer" else 0
-        return lambda: start_command(commands[name], environment=environment, niceness=niceness)
-
-    return [Kept(name, starter(name), say) for name in commands]
+    return [
+        Kept("site", lambda: start_serving(settings, study), say),
+        Kept("renderer", lambda: start_rendering(settings, niceness=NICENESS), say),
+    ]

@@ -1,0 +1,91 @@
+"""What the options about eyes come to: levels, iris, a clip's spec."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Final
+
+from study.commands.options import reading
+
+if TYPE_CHECKING:
+    from renderer.clip import ClipSpec
+    from renderer.detail import Detail
+
+SIDES: Final = ("left", "right")
+
+
+def spec_of(options: argparse.Namespace) -> ClipSpec:
+    """Return the spec that the options describe; raises ValueError for what no clip accepts."""
+    from renderer.clip import ClipSpec
+
+    width, height = options.size
+    optional: dict[str, Any] = {
+        "pupil_mm": options.pupil,
+        "crowd": options.crowd,
+        "preset": options.preset,
+    }
+    if options.sun:
+        optional["sun_azimuth_deg"], optional["sun_elevation_deg"] = options.sun
+    spec = ClipSpec(
+        left=detail_of(options.left, "left", options.effect, options.only_effect),
+        right=detail_of(options.right, "right", options.effect, options.only_effect),
+        distance=options.distance,
+        width=width,
+        height=height,
+        gaze_yaw_deg=options.gaze[0],
+        gaze_pitch_deg=options.gaze[1],
+    )
+    given = {name: value for name, value in optional.items() if value is not None}
+    return replace(spec, **options.iris, **given)
+
+
+def detail_of(
+    lod: str,
+    side: str,
+    effects: Sequence[tuple[tuple[str, ...], str, str]],
+    only: Sequence[str],
+) -> Detail:
+    """Return one eye's levels: a LoD, some effects at other levels, then those to keep."""
+    from renderer.detail import Detail
+
+    levels = {name: level for sides, name, level in effects if side in sides}
+    detail = Detail.uniform(lod).with_levels(**levels)
+    if not only:
+        return detail
+    kept = [detail.only(name).levels()[name] for name in only]
+    return Detail(**dict(zip(only, kept, strict=True)))
+
+
+@reading
+def effect_level(text: str) -> tuple[tuple[str, ...], str, str]:
+    """Read ``reflection=low`` or ``left.reflection=low``: sides, effect, level."""
+    from renderer.detail import check_effect, check_level
+
+    match = re.fullmatch(r"(?:(left|right)\.)?([a-z]+)=([a-z]+)", text)
+    if not match:
+        raise ValueError(
+            f'"{text}" is no effect with a level; write NAME=LEVEL, as in reflection=low, or '
+            "left.NAME=LEVEL"
+        )
+    side, effect, level = match.groups()
+    check_effect(effect)
+    check_level(effect, level)
+    return (side,) if side else SIDES, effect, level
+
+
+@reading
+def iris(text: str) -> dict[str, Any]:
+    """Read ``7``, ``brown`` or ``7:brown`` as the fields of a clip's spec."""
+    from renderer.clip import IRIS_COLOURS
+
+    seed, _, colour = text.partition(":") if ":" in text or text.isdecimal() else ("", "", text)
+    if (seed and not seed.isdecimal()) or (colour and colour not in IRIS_COLOURS):
+        raise ValueError(
+            f'"{text}" is no iris; write a seed, a colour or SEED:COLOUR, with a colour of '
+            + ", ".join(IRIS_COLOURS)
+        )
+    fields: dict[str, Any] = {"iris_colour": colour} if colour else {}
+    return fields | ({"iris_seed": int(seed)} if seed else {})

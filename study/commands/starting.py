@@ -1,0 +1,77 @@
+"""Start ``ocularist`` itself as a process of its own: the site, the renderer."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from study.settings import Settings
+
+_PR_SET_PDEATHSIG: Final = 1  # linux/prctl.h
+
+
+def start_serving(settings: Settings, study: str) -> subprocess.Popen[bytes]:
+    """Start the site, where the settings say."""
+    arguments = ["serve", study, "--quiet", *_places(settings)]
+    arguments += ["--host", settings.host, "--port", str(settings.port)]
+    if settings.tls_cert and settings.tls_key:
+        arguments += ["--tls-cert", str(settings.tls_cert), "--tls-key", str(settings.tls_key)]
+    return start_command(arguments, environment=_secrets(settings))
+
+
+def start_rendering(settings: Settings, *, niceness: int) -> subprocess.Popen[bytes]:
+    """Start a worker; the higher its niceness, the more others come first."""
+    return start_command(
+        ["worker", *_places(settings)], environment=_secrets(settings), niceness=niceness
+    )
+
+
+def _places(settings: Settings) -> list[str]:
+    return ["--data", str(settings.data_folder), "--media", str(settings.media_folder)]
+
+
+def _secrets(settings: Settings) -> dict[str, str]:
+    # A database's URL may hold a password, so it is no argument.
+    return {"OCULARIST_DATABASE": settings.database_url}
+
+
+def start_command(
+    arguments: Sequence[str],
+    *,
+    environment: Mapping[str, str] | None = None,
+    niceness: int = 0,
+) -> subprocess.Popen[bytes]:
+    """Start ``ocularist`` with these arguments as a process of its own.
+
+    ``environment`` adds to ours; secrets go there, because everybody can read arguments. The
+    process lives in its own session, so that Ctrl-C reaches its keeper alone, and ends with its
+    keeper even if that is killed.
+    """
+    end_with_parent = _end_with_parent()
+
+    def prepare() -> None:
+        end_with_parent()
+        os.nice(niceness)
+
+    return subprocess.Popen(
+        [sys.executable, "-m", "study", *arguments],
+        stdin=subprocess.DEVNULL,
+        env={**os.environ, **(environment or {})},
+        start_new_session=True,
+        preexec_fn=prepare,  # noqa: PLW1509 - the keeper has no threads
+    )
+
+
+def _end_with_parent() -> Callable[[], object]:
+    """Return what a child calls to be sent SIGTERM when its parent dies; Linux alone can."""
+    with contextlib.suppress(OSError, AttributeError):
+        prctl = ctypes.CDLL(None).prctl
+        return lambda: prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+    return lambda: None
