@@ -6,10 +6,7 @@ and never render one clip twice; one that is killed loses only its clip, which a
 
 from __future__ import annotations
 
-import os
-import secrets
 import signal
-import socket
 import threading
 import traceback
 from collections.abc import Callable, Iterator
@@ -24,6 +21,7 @@ from renderer.manifest import ClipRecord, Manifest, read_manifest
 from study.data import jobs, participants
 from study.data.database import Database
 from study.data.jobs import Job
+from study.worker_names import is_dead, worker_name
 
 Progress = Callable[[float], None]
 Render = Callable[[ClipSpec, Path, Progress], ClipRecord]
@@ -185,34 +183,3 @@ def stopping_on_signals() -> Iterator[threading.Event]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-def worker_name() -> str:
-    """Return a name that tells others where this worker runs: host, process, its start, a tag."""
-    pid = os.getpid()
-    return f"{socket.gethostname()[:60]}|{pid}|{_started(pid)}|{secrets.token_hex(4)}"
-
-
-def is_dead(worker: str) -> bool:
-    """Say whether a worker's process on this machine is gone; False for other machines."""
-    parts = worker.split("|")
-    if len(parts) != 4 or parts[0] != socket.gethostname()[:60] or not parts[1].isdecimal():
-        return False
-    try:
-        os.kill(int(parts[1]), 0)
-    except ProcessLookupError:
-        return True
-    except PermissionError:
-        return False
-    # The number may belong to another process by now.
-    return _started(int(parts[1])) != parts[2]
-
-
-def _started(pid: int) -> str:
-    """Return when a process started, in the kernel's ticks; empty where that cannot be known."""
-    try:
-        stat = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return ""
-    # Field 22 (proc(5)), counted behind the name in brackets, which may hold spaces.
-    return stat.rpartition(")")[2].split()[19]

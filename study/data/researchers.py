@@ -105,15 +105,14 @@ def sign_in(db: Database, name: str, password: str, *, address: str) -> Research
     with db.reading() as session:
         row = session.scalar(select(ResearcherRow).where(ResearcherRow.name == name))
     is_right = _is_right(_NOBODY if row is None else row.password_hash, password)
-    if row is None or not is_right:
-        with db.writing() as session:
-            session.add(SignInAttemptRow(name=name, address=address, created_at=db.now()))
-        return None
     with db.writing() as session:
+        # Old failures matter no more; those of this name are forgiven with the right password.
+        old = SignInAttemptRow.created_at < db.now() - WINDOW
+        session.execute(delete(SignInAttemptRow).where(old))
+        if row is None or not is_right:
+            session.add(SignInAttemptRow(name=name, address=address, created_at=db.now()))
+            return None
         session.execute(delete(SignInAttemptRow).where(SignInAttemptRow.name == name))
-        session.execute(
-            delete(SignInAttemptRow).where(SignInAttemptRow.created_at < db.now() - WINDOW)
-        )
     return Researcher(row.id, row.name)
 
 

@@ -15,7 +15,7 @@ from study.data.collection import Collected, CollectedTrial
 from study.data.devices import plausible
 from study.data.progress import early_step
 from study.data.studies import Study
-from study.data.trials import ANSWERED, PLAYED
+from study.data.trials import ANSWERED, complete_plays
 from study.data.views import is_certified
 from study.design.definition import StudyDefinition
 from study.design.parts import read_size
@@ -37,7 +37,7 @@ def _who(study: Study, person: Collected) -> Row:
 def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row:
     """Return what the two tables about trials share."""
     trial, row = collected.trial, person.row
-    plays = [e.payload for e in collected.events if e.kind == PLAYED and e.payload["is_complete"]]
+    plays = complete_plays(trial.completed_at, collected.events)
     clip = study.definition.clip(trial.clip)
     return {
         **_who(study, person),

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from typing import Any
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -83,12 +84,10 @@ def trial_of(row: TrialRow, events: Iterable[EventRow]) -> Trial:
 
     Amendments, which came after the trial was complete, are kept as events and do not count.
     """
-    views = 0
+    kept = list(events)
     answers: dict[str, Value | None] = {}
-    for event in events:
-        if event.kind == PLAYED and event.payload.get("is_complete"):
-            views += 1
-        elif event.kind == ANSWERED:
+    for event in kept:
+        if event.kind == ANSWERED:
             answers.update(event.payload["answers"])
     return Trial(
         id=row.id,
@@ -99,9 +98,22 @@ def trial_of(row: TrialRow, events: Iterable[EventRow]) -> Trial:
         clip_id=row.clip_id,
         started_at=row.started_at,
         completed_at=row.completed_at,
-        views=views,
+        views=len(complete_plays(row.completed_at, kept)),
         answers=answers,
     )
+
+
+def complete_plays(
+    completed_at: datetime | None, events: Iterable[EventRow]
+) -> list[Mapping[str, Any]]:
+    """Return the reports of a trial's plays to the end, those after its completion left out."""
+    return [
+        event.payload
+        for event in events
+        if event.kind == PLAYED
+        and event.payload.get("is_complete")
+        and (completed_at is None or event.created_at <= completed_at)
+    ]
 
 
 def lay_out(session: Session, row: ParticipantRow, definition: StudyDefinition) -> None:

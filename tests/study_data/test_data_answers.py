@@ -132,6 +132,14 @@ def test_plays_are_counted_once_each(begun: Any) -> None:
     assert trial(begun, 1).views == 2
 
 
+def test_a_play_after_the_trial_is_complete_is_no_view(begun: Any, clock: Any) -> None:
+    begun.answer(1)
+    clock.move(seconds=1)
+    begun.watch(1, number=2)
+    assert trial(begun, 1).views == 1
+    assert [e.kind for e in events.history(begun.db, begun.participant)].count("played") == 2
+
+
 def test_a_trial_starts_with_its_first_sign(begun: Any, clock: Any) -> None:
     first = clock.now
     begun.watch(1)

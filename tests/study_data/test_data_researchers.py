@@ -104,6 +104,15 @@ def test_signing_in_forgets_typing_errors(db: Database, ada: Researcher) -> None
         assert sign_in(db, "ada", PASSWORD) == ada
 
 
+def test_old_failures_are_not_kept(db: Database, clock: Any) -> None:
+    for _ in range(3):
+        assert sign_in(db, "nobody", "wrong") is None
+        clock.move(minutes=16)
+    with db.reading() as session:
+        kept = session.execute(text("SELECT count(*) FROM sign_in_attempts")).scalar_one()
+    assert kept == 1
+
+
 def test_showing_results_is_switched_per_researcher_and_recorded(
     db: Database, ada: Researcher, study: Study, clock: Any
 ) -> None:

@@ -21,7 +21,8 @@ from study import worker
 from study.data import jobs
 from study.data.database import Database, open_database
 from study.data.studies import Study
-from study.worker import is_dead, run_worker, stopping_on_signals, worker_name
+from study.worker import run_worker, stopping_on_signals
+from study.worker_names import is_dead, worker_name
 
 ROOT = Path(__file__).parents[2]
 
