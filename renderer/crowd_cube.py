@@ -14,16 +14,17 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.camera import perspective
-from renderer.crowd import GROUND_MM, Crowd
+from renderer.crowd import Crowd
 from renderer.cube import FACE_AXES, CubeTarget, Rectangle, face_view
+from renderer.stage import GROUND_MM
 
 Floats = npt.NDArray[np.float64]
+Tiles = npt.NDArray[np.bool_]
 
 NEAR_MM: Final = 150.0
 FAR_MM: Final = 30000.0
-LEVELS: Final = 4  # minified reflections read level 1 to 3; more would cost and show nothing
-# Flesh and cloth around a joint: the farthest that a vertex lies from the joints it hangs on.
-REACH_MM: Final = 260.0
+LEVELS: Final = 5  # a 350-pixel iris reads about every eleventh texel of 2048
+TILES: Final = 16  # a face is cleared and halved in tiles, 16 x 16 of them
 
 
 class CrowdCube:
@@ -33,10 +34,9 @@ class CrowdCube:
         self.gl = gl
         self.size = size
         self.crowd = crowd
-        levels = min(LEVELS, size.bit_length())
-        self._cube = CubeTarget(gl, size, levels=levels, depth=True)
+        self._cube = CubeTarget(gl, size, levels=min(LEVELS, size.bit_length()), depth=True)
         self._projection = perspective(90.0, 1.0, NEAR_MM, FAR_MM)
-        self._drawn: list[tuple[int, Rectangle]] = []
+        self._drawn = np.zeros((6, TILES, TILES), dtype=bool)
         for face in range(6):
             self._cube.attach(face).clear(0.0, 0.0, 0.0, 0.0)
         self._cube.build_levels()
@@ -49,94 +49,93 @@ class CrowdCube:
     def render(self, time_s: float) -> None:
         """Draw everybody at a scene time; binds targets of its own and leaves them bound."""
         self.crowd.pose(time_s)
-        joints = self.crowd.joints_mm()
-        shadows = [self._on_ground(places) for places in joints]
-        stale = list(self._drawn)
-        self._drawn = []
+        bodies = self.crowd.bounds_mm()
+        shadows = [(self._on_ground(points), reach) for points, reach in bodies]
+        stale, self._drawn = self._drawn, np.zeros_like(self._drawn)
+        changed: list[tuple[int, Rectangle]] = []
         for face in range(6):
-            bodies = self._touched(face, joints)
-            grounds = self._touched(face, shadows)
-            old = [rectangle for where, rectangle in stale if where == face]
-            new = [*bodies.values(), *grounds.values()]
-            if not old and not new:
-                continue
-            self._draw_face(face, bodies, grounds, clear=_union([*old, *new]))
-            if new:
-                self._drawn.append((face, _union(new)))
-        self._cube.build_levels(_merge(stale, self._drawn))
+            seen = {number: touched_tiles(*figure, face) for number, figure in enumerate(bodies)}
+            cast = {number: touched_tiles(*figure, face) for number, figure in enumerate(shadows)}
+            for tiles in (*seen.values(), *cast.values()):
+                self._drawn[face] |= tiles
+            rectangles = self._rectangles(stale[face] | self._drawn[face])
+            changed += [(face, rectangle) for rectangle in rectangles]
+            if rectangles:
+                self._draw_face(face, rectangles, seen=_present(seen), cast=_present(cast))
+        self._cube.build_levels(changed)
 
     def _draw_face(
-        self,
-        face: int,
-        bodies: dict[int, Rectangle],
-        grounds: dict[int, Rectangle],
-        *,
-        clear: Rectangle,
+        self, face: int, clear: list[Rectangle], *, seen: list[int], cast: list[int]
     ) -> None:
         target = self._cube.attach(face)
-        target.scissor = clear
-        target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        for rectangle in clear:
+            target.scissor = rectangle
+            target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        target.scissor = (0, 0, self.size, self.size)
         view = face_view(face).astype(np.float32)
         self.gl.enable_only(moderngl.NOTHING)
-        camera = {"view_matrix": view, "projection": self._projection}
-        self.crowd.draw_shadows(list(grounds), **camera)
-        self.gl.enable_only(moderngl.DEPTH_TEST)
-        self.crowd.draw_figures(list(bodies), **camera, camera_mm=np.zeros(3))
+        self.crowd.draw_shadows(cast, view_matrix=view, projection=self._projection)
+        self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        self.crowd.draw_figures(
+            seen, view_matrix=view, projection=self._projection, camera_mm=np.zeros(3)
+        )
 
-    def _touched(self, face: int, places: list[Floats]) -> dict[int, Rectangle]:
-        """Return which figures may touch a face, and where, by spheres around their joints."""
-        return {
-            number: bounds
-            for number, points in enumerate(places)
-            if (bounds := face_bounds(points, face, size=self.size)) is not None
-        }
+    def _rectangles(self, tiles: Tiles) -> list[Rectangle]:
+        side = self.size / TILES
+        return [
+            (round(x * side), round(y * side), round(width * side), round(height * side))
+            for x, y, width, height in cover(tiles)
+        ]
 
-    def _on_ground(self, joints: Floats) -> Floats:
-        """Slide joints along the sun's light on to the ground, as the shadow's shader does."""
+    def _on_ground(self, points: Floats) -> Floats:
+        """Slide points along the sun's light on to the ground, as the shadow's shader does."""
         sun = self.crowd.light.sky.sun_direction
-        fall = np.maximum(joints[:, 1] - GROUND_MM, 0.0) / max(float(sun[1]), 0.1)
-        grounded = joints - fall[:, None] * sun
+        fall = np.maximum(points[:, 1] - GROUND_MM, 0.0) / max(float(sun[1]), 0.1)
+        grounded = points - fall[:, None] * sun
         grounded[:, 1] = GROUND_MM
-        return grounded
+        return np.asarray(grounded)
 
 
-def face_bounds(points: Floats, face: int, *, size: int) -> Rectangle | None:
-    """Return the pixels of a face that spheres of REACH_MM around points may touch, or None."""
+def touched_tiles(points: Floats, reach_mm: Floats, face: int) -> Tiles:
+    """Return which tiles (row, column) of a face spheres around points (n, 3) may touch."""
     right, down, forward = (points @ FACE_AXES[face]).T
-    reach = REACH_MM
+    tiles = np.zeros((TILES, TILES), dtype=bool)
     # A sphere touches the face's pyramid only if it reaches over all four of its side planes.
-    inside = (forward - np.abs(right) > -reach * 2**0.5) & (
-        forward - np.abs(down) > -reach * 2**0.5
-    )
-    inside &= forward > -reach
+    slack = reach_mm * 2**0.5
+    inside = (forward - np.abs(right) > -slack) & (forward - np.abs(down) > -slack)
+    inside &= forward > NEAR_MM - reach_mm
     if not inside.any():
-        return None
+        return tiles
+    near = np.maximum(forward - reach_mm, NEAR_MM)[inside]
+    far = np.maximum(forward + reach_mm, NEAR_MM)[inside]
     low, high = [], []
     for across in (right[inside], down[inside]):
-        near = np.maximum(forward[inside] - reach, NEAR_MM)
-        far = forward[inside] + reach
-        low.append(min(((across - reach) / near).min(), ((across - reach) / far).min()))
-        high.append(max(((across + reach) / near).max(), ((across + reach) / far).max()))
-    first = np.floor((np.clip(low, -1, 1) * 0.5 + 0.5) * size).astype(int)
-    last = np.ceil((np.clip(high, -1, 1) * 0.5 + 0.5) * size).astype(int)
-    width, height = (last - first).tolist()
-    if width <= 0 or height <= 0:
-        return None
-    return int(first[0]), int(first[1]), width, height
+        start, end = across - reach_mm[inside], across + reach_mm[inside]
+        low.append(np.minimum(start / near, start / far))
+        high.append(np.maximum(end / near, end / far))
+    first = np.floor((np.clip(low, -1, 1) * 0.5 + 0.5) * TILES).astype(int).T
+    last = np.ceil((np.clip(high, -1, 1) * 0.5 + 0.5) * TILES).astype(int).T
+    for (left, bottom), (end_x, end_y) in zip(first.tolist(), last.tolist(), strict=True):
+        tiles[bottom:end_y, left:end_x] = True
+    return tiles
 
 
-def _union(rectangles: list[Rectangle]) -> Rectangle:
-    boxes = np.array([[x, y, x + w, y + h] for x, y, w, h in rectangles])
-    (left, low), (right, high) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
-    return int(left), int(low), int(right - left), int(high - low)
+def cover(tiles: Tiles) -> list[Rectangle]:
+    """Return disjoint rectangles (x, y, width, height) in tiles that cover the true ones."""
+    left = tiles.copy()
+    found: list[Rectangle] = []
+    for y, x in np.argwhere(tiles).tolist():
+        if not left[y, x]:
+            continue
+        width = height = 1
+        while x + width < left.shape[1] and left[y, x + width]:
+            width += 1
+        while y + height < left.shape[0] and left[y + height, x : x + width].all():
+            height += 1
+        left[y : y + height, x : x + width] = False
+        found.append((x, y, width, height))
+    return found
 
 
-def _merge(
-    old: list[tuple[int, Rectangle]], new: list[tuple[int, Rectangle]]
-) -> list[tuple[int, Rectangle]]:
-    merged = []
-    for face in range(6):
-        found = [rectangle for where, rectangle in [*old, *new] if where == face]
-        if found:
-            merged.append((face, _union(found)))
-    return merged
+def _present(tiles: dict[int, Tiles]) -> list[int]:
+    return [number for number, touched in tiles.items() if touched.any()]

@@ -15,8 +15,6 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.program import build_program
-
 Rectangle = tuple[int, int, int, int]
 
 FACES: Final = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -34,11 +32,13 @@ FACE_AXES: Final = tuple(
 )
 
 _FRAMEBUFFER: Final = 0x8D40
+_READ_FRAMEBUFFER: Final = 0x8CA8
+_COLOR_BUFFER_BIT: Final = 0x4000
+_LINEAR: Final = 0x2601
 _COLOR_ATTACHMENT0: Final = 0x8CE0
 _FRAMEBUFFER_COMPLETE: Final = 0x8CD5
 _POSITIVE_X: Final = 0x8515
 _TEXTURE_CUBE_MAP: Final = 0x8513
-_TEXTURE_BASE_LEVEL: Final = 0x813C
 _TEXTURE_MAX_LEVEL: Final = 0x813D
 _RGBA16F: Final = 0x881A
 _RGBA: Final = 0x1908
@@ -102,19 +102,19 @@ class CubeTarget:
             if levels > 1
             else (moderngl.LINEAR, moderngl.LINEAR)
         )
+        # moderngl wants a colour attachment of its own; a face takes its place at once.
+        self._stand_in = gl.renderbuffer((size, size), 4, dtype="f2")
         self._target = self._make_target(depth=depth)
         self._small = self._make_target(depth=False) if depth else self._target
-        self._halve = build_program(gl, "screen.vert", fragment="cube_halve.frag")
-        self._screen = gl.vertex_array(self._halve.gl_program, [])
+        self._source = self._make_target(depth=False) if levels > 1 else self._target
 
     def attach(self, face: int, *, level: int = 0) -> moderngl.Framebuffer:
         """Make a face and level the target, with viewport and scissor over all of it."""
         target = self._target if level == 0 else self._small
         target.use()
-        integer = ctypes.c_uint
-        attach = gl_function("glFramebufferTexture2D", *[integer] * 4, ctypes.c_int)
-        attach(_FRAMEBUFFER, _COLOR_ATTACHMENT0, _POSITIVE_X + face, self.texture.glo, level)
-        status = gl_function("glCheckFramebufferStatus", integer, result=integer)(_FRAMEBUFFER)
+        _attach(_FRAMEBUFFER, face, self.texture.glo, level)
+        check = gl_function("glCheckFramebufferStatus", ctypes.c_uint, result=ctypes.c_uint)
+        status = check(_FRAMEBUFFER)
         if status != _FRAMEBUFFER_COMPLETE:
             raise RuntimeError(
                 f"cube face {FACES[face]}, level {level}: the driver refuses it as a target "
@@ -129,23 +129,26 @@ class CubeTarget:
         """Fill the smaller levels by halving, all or below rectangles (face, (x, y, w, h))."""
         whole = [(face, (0, 0, self.size, self.size)) for face in range(6)]
         wanted = whole if rectangles is None else list(rectangles)
-        self.gl.enable_only(moderngl.NOTHING)
-        for level in range(1, self.levels):
-            self._confine_reading(level - 1)
-            side = self.size >> level
-            for face, rectangle in wanted:
-                target = self.attach(face, level=level)
-                target.scissor = _shrunk(rectangle, level, side=side)
-                self._halve.set(
-                    u_face=FACE_AXES[face],
-                    u_face_size=(side, side),
-                    u_source=self.texture,
-                )
-                self._screen.render(moderngl.TRIANGLES, vertices=3)
-        self._confine_reading(None)
+        for face in sorted({face for face, _ in wanted}):
+            parts = [rectangle for where, rectangle in wanted if where == face]
+            for level in range(1, self.levels):
+                # Below level 1 a pixel costs less than another call.
+                self._halve(face, level, parts=parts if level == 1 else [_union(parts)])
+
+    def _halve(self, face: int, level: int, *, parts: list[Rectangle]) -> None:
+        """Fill parts of a level with means of 2 x 2 texels: blits at half size, bilinear."""
+        self.attach(face, level=level)
+        _bind(_READ_FRAMEBUFFER, self._source.glo)
+        _attach(_READ_FRAMEBUFFER, face, self.texture.glo, level - 1)
+        integer, word = ctypes.c_int, ctypes.c_uint
+        blit = gl_function("glBlitFramebuffer", *[integer] * 8, word, word)
+        for part in parts:
+            x, y, width, height = _shrunk(part, level, self.size >> level)
+            ends = (x, y, x + width, y + height)
+            blit(*(2 * end for end in ends), *ends, _COLOR_BUFFER_BIT, _LINEAR)
 
     def _allocate_levels(self) -> None:
-        self._bind()
+        self._bind_texture()
         integer = ctypes.c_int
         allocate = gl_function(
             "glTexImage2D",
@@ -157,32 +160,40 @@ class CubeTarget:
                 allocate(
                     _POSITIVE_X + face, level, _RGBA16F, side, side, 0, _RGBA, _HALF_FLOAT, None
                 )
-        self._confine_reading(None)
+        self._limit_levels()
 
-    def _confine_reading(self, level: int | None) -> None:
-        """Let lookups see one level alone, so that another may be written; None: all levels."""
-        self._bind()
+    def _limit_levels(self) -> None:
+        """Tell lookups which levels there are; without it they take the texture for incomplete."""
         set_parameter = gl_function("glTexParameteri", ctypes.c_uint, ctypes.c_uint, ctypes.c_int)
-        first, last = (0, self.levels - 1) if level is None else (level, level)
-        set_parameter(_TEXTURE_CUBE_MAP, _TEXTURE_BASE_LEVEL, first)
-        set_parameter(_TEXTURE_CUBE_MAP, _TEXTURE_MAX_LEVEL, last)
+        set_parameter(_TEXTURE_CUBE_MAP, _TEXTURE_MAX_LEVEL, self.levels - 1)
 
-    def _bind(self) -> None:
+    def _bind_texture(self) -> None:
         gl_function("glActiveTexture", ctypes.c_uint)(_TEXTURE0 + _SPARE_UNIT)
         gl_function("glBindTexture", ctypes.c_uint, ctypes.c_uint)(
             _TEXTURE_CUBE_MAP, self.texture.glo
         )
 
     def _make_target(self, *, depth: bool) -> moderngl.Framebuffer:
-        # moderngl wants a colour attachment of its own; a face takes its place at once.
-        stand_in = self.gl.renderbuffer((self.size, self.size), 4, dtype="f2")
         buffer = self.gl.depth_renderbuffer((self.size, self.size)) if depth else None
-        target = self.gl.framebuffer([stand_in], buffer)
-        target.use()
-        return target
+        return self.gl.framebuffer([self._stand_in], buffer)
 
 
-def _shrunk(rectangle: Rectangle, level: int, *, side: int) -> Rectangle:
+def _bind(target: int, framebuffer: int) -> None:
+    gl_function("glBindFramebuffer", ctypes.c_uint, ctypes.c_uint)(target, framebuffer)
+
+
+def _attach(target: int, face: int, texture: int, level: int) -> None:
+    attach = gl_function("glFramebufferTexture2D", *[ctypes.c_uint] * 4, ctypes.c_int)
+    attach(target, _COLOR_ATTACHMENT0, _POSITIVE_X + face, texture, level)
+
+
+def _union(rectangles: list[Rectangle]) -> Rectangle:
+    left, low = min(r[0] for r in rectangles), min(r[1] for r in rectangles)
+    right, high = max(r[0] + r[2] for r in rectangles), max(r[1] + r[3] for r in rectangles)
+    return left, low, right - left, high - low
+
+
+def _shrunk(rectangle: Rectangle, level: int, side: int) -> Rectangle:
     """Return the texels of a smaller level that a rectangle of level 0 touches."""
     x, y, width, height = rectangle
     left, low = x >> level, y >> level

@@ -32,6 +32,7 @@ class Piece:
     target: int
     importance: Floats | None = None
     shift_mm: Floats | None = None
+    is_two_sided: bool = False
 
 
 def pieces(person: Person) -> list[Piece]:
@@ -165,4 +166,4 @@ def _long_hair(person: Person, base: Floats) -> Piece:
     kept = (centre[:, 1] > 520) & frames_face
     surface = _flat(person.hair, len(base))
     surface[:, :3] *= (1 + 0.2 * np.sin(base @ [0.5, 0.0, 0.5]))[:, None]
-    return Piece(triangles[kept], np.full(len(base), 2.0), surface, 300)
+    return Piece(triangles[kept], np.full(len(base), 2.0), surface, 300, is_two_sided=True)

@@ -27,12 +27,16 @@ BONES: Final = (
 )  # fmt: skip
 
 
+OUTLINE_TRIANGLES: Final = 1100
+
+
 @dataclass(frozen=True)
 class Body:
     """A person's mesh in rest pose with the skeleton of BONES.
 
     ``positions_mm`` and ``normals`` (n, 3); ``surface`` (n, 4) linear albedo and gloss; ``bones``
-    and ``weights`` (n, 4); ``triangles`` (m, 3); ``rig`` for posing, its bones those of BONES.
+    and ``weights`` (n, 4); ``triangles`` (m, 3), ``outline`` fewer of them for the shadow; ``rig``
+    for posing, its bones those of BONES.
     """
 
     positions_mm: Floats
@@ -41,6 +45,7 @@ class Body:
     bones: Indices
     weights: Floats
     triangles: Indices
+    outline: Indices
     rig: Rig
 
 
@@ -72,13 +77,15 @@ def build_body(person: Person) -> Body:
         triangles=np.concatenate(
             [part[4] + start for part, start in zip(parts, starts, strict=False)]
         ),
+        outline=np.zeros((0, 3), dtype=np.int64),
         rig=small,
         bones=bones,
         weights=shares,
     )
     for part in (*eyes(person, shape), *brows(person, shape)):
         body = _with_part(body, part)
-    return body
+    outline = decimate(body.positions_mm, body.triangles, target=OUTLINE_TRIANGLES)
+    return replace(body, outline=outline)
 
 
 def _thin(shape: Floats, piece: Piece) -> tuple[Indices, Floats, Floats, Floats, Indices]:
@@ -95,12 +102,13 @@ def _thin(shape: Floats, piece: Piece) -> tuple[Indices, Floats, Floats, Floats,
     fewer = _thinned(used.tobytes(), triangles.tobytes(), importance[used].tobytes(), piece.target)
     normals = vertex_normals(positions, triangles)
     kept, compact = np.unique(fewer, return_inverse=True)
+    whole = compact.reshape(-1, 3)
     return (
         used[kept],
         positions[kept],
         normals[kept],
         piece.surface[used[kept]],
-        compact.reshape(-1, 3),
+        np.concatenate([whole, whole[:, ::-1]]) if piece.is_two_sided else whole,
     )
 
 

@@ -21,6 +21,8 @@ Floats = npt.NDArray[np.float64]
 Turns = dict[str, Floats]
 
 WALK_SPEED_MM_S: Final = 1300.0
+# From little to index finger of the right hand, in the base mesh's rest pose.
+_THUMB_SIDE: Final = np.array([0.393, 0.419, 0.818])
 _ROLL_MM: Final = 150.0  # from heel to ball: how far the ankle moves on over a standing foot
 # Sagittal joint angles over one stride from heel contact, level walking at natural cadence, read
 # off published means (after Winter 2009, "Biomechanics and Motor Control of Human Movement").
@@ -193,12 +195,11 @@ def _show_palm(rig: Rig, parent: Floats, along: Floats, *, lag_deg: float) -> Fl
     hand, forearm = rig.index("hand_r"), rig.index("lowerarm_r")
     axis = rig.heads_mm[hand] - rig.heads_mm[forearm]
     axis /= np.linalg.norm(axis)
-    # At rest the palm faces inwards and down, square to the forearm.
-    palm = np.cross(axis, [0.0, 0.55, -0.83])
-    palm = parent @ palm
     unit = along / np.linalg.norm(along)
-    wanted = np.array([0.0, 0.0, 1.0]) - unit[2] * unit
-    flat = palm - (palm @ unit) * unit
+    thumb = parent @ _THUMB_SIDE
+    flat = thumb - (thumb @ unit) * unit
+    # Palm forwards, the right thumb points to the character's left.
+    wanted = np.array([1.0, 0.0, 0.0]) - unit[0] * unit
     turn = math.atan2(float(np.cross(flat, wanted) @ unit), float(flat @ wanted))
     return rotation(axis, math.degrees(turn)) @ (parent.T @ rotation([0, 0, 1], lag_deg) @ parent)
 

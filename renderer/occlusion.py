@@ -70,6 +70,6 @@ def cone_directions(axis: Floats, *, angle_rad: float) -> Floats:
 
 def _surface_points(positions: Floats, triangles: Indices) -> Floats:
     """Return points spread over the triangles closely enough for the grid's cells."""
-    shares = np.array([[a / 5, b / 5, 1 - (a + b) / 5] for a in range(6) for b in range(6 - a)])
+    shares = np.array([[a / 3, b / 3, 1 - (a + b) / 3] for a in range(4) for b in range(4 - a)])
     corners = positions[triangles]
     return np.asarray(np.einsum("sk,tkc->tsc", shares, corners).reshape(-1, 3))
