@@ -33,6 +33,7 @@ SRGB8_ALPHA8: Final = 0x8C43
 THICKNESS_PX: Final = {"high": 512, "ultra": 1024}  # finer than the nodes of each level's march
 DIRECTION_MAP_PX: Final = 256  # refracted light's direction where no caustic is drawn
 MULTIPLE_SHARE: Final = 0.45  # of the reflectance: light scattered more than once, a smooth floor
+CHAMBER_PX: Final = 32  # ambient light varies slowly over the iris
 SHADE_MAP_PX: Final = 512  # 0.05 mm: finer than the softest edge of a shadow
 RIM_SAMPLES: Final = 128
 RIM_EDGE_MM: Final = 18.0
@@ -73,7 +74,7 @@ def sunlight_values(
     caustic = cached_array(
         f"caustic {size} {np.round(sun_eye, 9).tolist()}", lambda: caustic_map(sun_eye, size)
     )
-    chamber = chamber_irradiance(sky.ambient_sh, eye_to_world, rims=rims)
+    chamber = chamber_irradiance(sky.ambient_sh, eye_to_world, rims=rims, size_px=CHAMBER_PX)
     return {
         "u_caustic_map": _float_texture(gl, _with_alpha(caustic)),
         "u_chamber_map": _float_texture(gl, _with_alpha(chamber)),

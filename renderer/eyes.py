@@ -19,6 +19,7 @@ from renderer.anatomy import shader_constants
 from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.eye_calibration import calibrated_gain, open_lids
 from renderer.eye_maps import (
     iris_values,
     rims_texture,
@@ -163,14 +164,19 @@ class Eyes:
             "u_mirror": 1.0 if eye == 0 else -1.0,
             "u_iris_gain": np.full(3, gain),
         }
-        if detail.setting("tessellation", "normals") != "analytic":
-            return EyeModel(program, vertex_array(self._gl, program, detail_mesh(detail)), values)
-        return EyeModel(
-            program,
-            vertex_array(self._gl, program, hull_mesh()),
-            values,
-            Silhouette(self._gl, detail_mesh(detail)),
-        )
+        is_fine = detail.setting("tessellation", "normals") == "analytic"
+        mesh = vertex_array(self._gl, program, hull_mesh() if is_fine else detail_mesh(detail))
+        if spec.preset == "calibrated":
+            values["u_iris_gain"] = calibrated_gain(
+                self._gl,
+                program,
+                mesh=mesh,
+                values=values,
+                open_rims=rims_texture(self._gl, open_lids()),
+                mean_albedo=np.asarray(values["u_iris_mean"]),
+            )
+        silhouette = Silhouette(self._gl, detail_mesh(detail)) if is_fine else None
+        return EyeModel(program, mesh, values, silhouette)
 
 
 def eye_constants(detail: Detail, *, left_sum: bool = False) -> dict[str, int | float]:

@@ -46,6 +46,13 @@ IrisLight light_on_iris(vec2 x_mm, Surface s) {
     return light;
 }
 
+// What seeps through the limbus, where a ray misses the iris.
+vec3 limbal_radiance(Surface s) {
+    float cosine = max(dot(s.n_eye, turned_to_eye(u_sun_direction)), 0.0);
+    vec3 ambient = ambient_irradiance(turned_to_world(s.n_eye)) * s.sky;
+    return LIMBAL_TISSUE * (u_sun_irradiance * s.sun * cosine + ambient) / PI;
+}
+
 // The relief's cosine relative to the flat plane's, which the irradiance already holds.
 float relief_shading(IrisTexel texel, IrisLight light) {
     if (TEXTURE < HIGH) return 1.0;

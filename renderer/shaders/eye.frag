@@ -24,7 +24,8 @@ vec3 iris_radiance(Surface s) {
     vec3 reflectance = iris_reflectance(texel, ray, light);
     vec3 sun = light.sun * relief_shading(texel, light);
     vec3 ambient = light.ambient * texel.cavity;
-    return ray.transmitted * u_iris_gain * reflectance * (sun + ambient) / PI;
+    vec3 iris = u_iris_gain * reflectance * (sun + ambient) / PI;
+    return ray.transmitted * mix(iris, limbal_radiance(s), beyond_root(length(ray.x_mm)));
 }
 
 vec3 eye_radiance(Surface s) {

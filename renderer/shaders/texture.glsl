@@ -9,6 +9,7 @@ uniform float u_pupil_mm;          // diameter
 uniform vec3 u_iris_gain;          // of the preset: thesis or calibrated
 
 const float MAP_EDGE_MM = 6.0;     // half the side of every map of the iris plane
+const vec3 LIMBAL_TISSUE = vec3(0.085, 0.07, 0.06);  // share of the light on the limbus
 const float MAGNIFICATION = 1.12;  // the cornea's
 
 struct IrisTexel {
@@ -35,11 +36,16 @@ float plane_lod(sampler2D map) {
     return max(log2(u_mm_per_px / (MAGNIFICATION * texel_mm)), 0.0);
 }
 
-// What lies behind the pupil's edge is dark, what lies beyond the root is the limbus's own shadow.
-float iris_extent(float r) {
+// What lies behind the pupil's edge is dark.
+float outside_pupil(float r) {
     float pupil = 0.5 * u_pupil_mm, soft = max(u_mm_per_px, 0.06);
-    return smoothstep(pupil - soft, pupil, r)
-         * (1.0 - smoothstep(IRIS_MAP_RADIUS_MM - 0.35, IRIS_MAP_RADIUS_MM + 0.25, r));
+    return smoothstep(pupil - 0.5 * soft, pupil + 0.5 * soft, r);
+}
+
+// Beyond the iris's root the ray meets the limbus from inside: dark tissue that glows a little with
+// the light that seeps through it. Maps are never read there.
+float beyond_root(float r) {
+    return smoothstep(IRIS_MAP_RADIUS_MM - 0.35, IRIS_MAP_RADIUS_MM + 0.35, r);
 }
 
 IrisTexel iris_texel(vec2 x_mm) {
@@ -58,6 +64,6 @@ IrisTexel iris_texel(vec2 x_mm) {
         vec3 n = textureLod(u_iris_normal, plane_uv(texel.map_mm), plane_lod(u_iris_normal)).xyz;
         texel.n_eye = normalize((2.0 * n - 1.0) * vec3(u_mirror, 1.0, 1.0));
     }
-    texel.albedo *= iris_extent(r);
+    texel.albedo *= outside_pupil(r);
     return texel;
 }
