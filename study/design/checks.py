@@ -37,7 +37,7 @@ def _check_lods(data: Data) -> Iterator[Fault]:
                     f"no level for {', '.join(absent)}; give every effect a level, or name a "
                     'LoD to start from: base = "ultra"',
                 )
-        elif base not in lods:
+        elif not isinstance(base, str) or base not in lods:
             others = [other for other in lods if other != name]
             yield Fault(dotted(("lods", name, "base")), unknown("LoD", base, others))
         elif _has_circle(lods, name):

@@ -10,7 +10,7 @@ import types
 import typing
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -90,8 +90,20 @@ def _fault(details: ErrorDetails, model: type[BaseModel]) -> Fault:
         )
     if kind == "study":
         return Fault(dotted(place), str(context["message"]))
-    message = details["msg"][0].lower() + details["msg"][1:]
+    words = _EXPECTED.get(kind)
+    message = f"expected {words}" if words else details["msg"][0].lower() + details["msg"][1:]
     return Fault(dotted(place), f"{message}; found {_shown(details['input'])}")
+
+
+# What pydantic calls dictionaries and tuples, in the words of a TOML file.
+_EXPECTED: Final = {
+    **dict.fromkeys(("model_type", "model_attributes_type", "dict_type"), "a table"),
+    **dict.fromkeys(("tuple_type", "list_type"), "a list"),
+    "string_type": "text in quotes",
+    "float_type": "a number",
+    **dict.fromkeys(("int_type", "int_from_float", "int_parsing"), "a whole number"),
+    **dict.fromkeys(("bool_type", "bool_parsing"), "true or false"),
+}
 
 
 def _shown(value: Any) -> str:

@@ -12,7 +12,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
-from study.design.parts import Name, Part, Text, Whole
+from study.design.parts import Flag, Name, Part, Text, Whole
 
 Value = int | float | str
 MAX_TEXT_CHARS: Final = 10_000
@@ -38,7 +38,7 @@ class _Question(Part):
     id: Name
     text: Text
     help: str = ""
-    is_required: bool = False
+    is_required: Flag = False
     shown_if: ShownIf | None = None
 
 
@@ -73,7 +73,7 @@ class TextQuestion(_Question):
 
     kind: Literal["text"]
     max_chars: Annotated[Whole, Field(ge=1, le=MAX_TEXT_CHARS)] = 2000
-    is_long: bool = True
+    is_long: Flag = True
 
 
 Question = Annotated[

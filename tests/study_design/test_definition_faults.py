@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import copy
+import functools
+import json
+import random
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
-from study.design.definition import parse_definition
+from study.design.definition import parse_definition, read_definition
 from study.design.faults import DefinitionError
 
 Raw = dict[str, Any]
@@ -109,7 +113,7 @@ CASES: list[tuple[Change, str]] = [
     ),
     (
         lambda raw: raw.update(scene={"sun_elevation_deg": True}),
-        "scene.sun_elevation_deg: input should be a valid number; found True",
+        "scene.sun_elevation_deg: expected a number; found True",
     ),
     (lambda raw: raw.pop("consent"), "consent: missing; this key is required"),
     (lambda raw: raw.update(title="  "), "title: empty; write some text or leave the key out"),
@@ -180,6 +184,61 @@ def test_all_faults_are_reported_at_once(raw: Raw) -> None:
         *("lods.ultra.reflection", "clips.0.distance", "clips.0.distanse", "thanks"),
         "clips.1.left",
     ]
+
+
+JUNK: list[Any] = [None, 0, -1, 1.5, True, "", "x", "low", [], {}, [1], {"a": 1}, [[]], 10**30]
+
+
+def places(found: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Yield the place of every value in nested tables and lists."""
+    pairs = found.items() if isinstance(found, dict) else enumerate(found)
+    for key, value in pairs:
+        yield (*place, key)
+        if isinstance(value, dict | list):
+            yield from places(value, (*place, key))
+
+
+def test_damage_anywhere_is_told_and_never_a_crash() -> None:
+    rng = random.Random(1)
+    sound = json.loads(read_definition("lod").to_json())
+    told = 0
+    for _ in range(150):
+        damaged = copy.deepcopy(sound)
+        *inner, last = rng.choice(list(places(damaged)))
+        holder = functools.reduce(lambda table, key: table[key], inner, damaged)
+        holder[last] = rng.choice(JUNK)
+        try:
+            parse_definition(damaged)
+        except DefinitionError as error:
+            told += len(error.faults) > 0
+    assert told > 100
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "message"),
+    [
+        (("eye",), 3, "eye: expected a table; found 3"),
+        (("sizes",), "320x180", "sizes: expected a list; found '320x180'"),
+        (("title",), 3, "title: expected text in quotes; found 3"),
+        (("orbit", "fps"), "30", "orbit.fps: expected a whole number; found '30'"),
+        (("orbit", "fps"), 29.5, "orbit.fps: expected a whole number; found 29.5"),
+        (
+            ("questions", 0, "is_required"),
+            "no",
+            "questions.0.is_required: expected true or false; found 'no'",
+        ),
+        (("lods", "low", "base"), {}, "lods.low.base: expected text in quotes; found {}"),
+        (("order",), {"min_views": 0}, "order.min_views: input should be greater than or equal to"),
+        (("order",), {"trials": "shuffled"}, "order.trials: input should be 'random' or 'file'"),
+    ],
+)
+def test_a_value_of_the_wrong_kind_is_told_in_the_files_words(
+    raw: Raw, place: tuple[Any, ...], value: Any, message: str
+) -> None:
+    *inner, last = place
+    holder = functools.reduce(lambda table, key: table[key], inner, raw)
+    holder[last] = value
+    assert any(line.startswith(f"thesis.toml: {message}") for line in messages(raw))
 
 
 def test_a_sound_file_has_no_fault(raw: Raw) -> None:
