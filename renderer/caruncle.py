@@ -15,8 +15,8 @@ from renderer.makehuman import Floats, Indices
 
 CARUNCLE_END_MM: Final = -9.2  # towards the pupil: under the globe's surface from here on
 MEMBRANE_START_MM: Final = 10.2
-ROWS: Final = 40
-COLUMNS: Final = 28
+ROWS: Final = 26
+COLUMNS: Final = 18
 
 
 def caruncle() -> tuple[Floats, Indices, Floats, Floats]:

@@ -29,8 +29,8 @@ MARGIN_MM: Final = 1.9  # lid thickness at the rim
 OUTLINE_MM: Final = (24.5, 22.5, 17.5, 17.0)  # patch ends: temple, nose, up, down of (0, 0)
 # Lift in mm of the outermost rings over the face, and how far they obey.
 ENDING: Final = ((0.0, 0.6), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0))
-AROUND: Final = 192
-ALONG: Final = 54
+AROUND: Final = 168
+ALONG: Final = 46
 
 
 @dataclass(frozen=True)

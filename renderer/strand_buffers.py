@@ -5,6 +5,8 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
+from renderer.camera import Matrix
+from renderer.head_buffers import frustum_distance
 from renderer.lashes import Strands
 from renderer.makehuman import Floats, Indices
 from renderer.program import Program
@@ -26,8 +28,11 @@ class StrandMesh:
         self.centre_mm: Floats = (points.min(axis=0) + points.max(axis=0)) / 2
         self.radius_mm = float(np.linalg.norm(points - self.centre_mm, axis=1).max())
 
-    def draw(self, program: Program) -> None:
-        """Draw all ribbons; a mesh belongs to one program."""
+    def draw(self, program: Program, clip: Matrix) -> None:
+        """Draw all ribbons unless none can be seen; a mesh belongs to one program."""
+        away = frustum_distance(np.asarray(clip, dtype=float), self.centre_mm[None])
+        if (away < -self.radius_mm).any():
+            return
         if self._array is None:
             self._array = self._gl.vertex_array(
                 program.gl_program, [(self._vertices, LAYOUT[0], *LAYOUT[1])], self._index

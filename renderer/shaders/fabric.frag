@@ -10,7 +10,6 @@ in vec3 v_world;
 in vec4 v_detail;
 
 uniform sampler2D u_knit;      // slope x, slope y, openness, fuzz
-uniform float u_knit_level;
 
 out vec4 out_radiance;
 
@@ -20,7 +19,7 @@ void main() {
     vec3 n = normalize(v_normal);
     vec3 t = normalize(vec3(n.z, 0.0, -n.x) + vec3(1e-4, 0.0, 0.0));
     vec3 b = cross(n, t);
-    vec4 knit = textureLod(u_knit, v_detail.xy * vec2(1.0, 0.25), u_knit_level);
+    vec4 knit = textureLod(u_knit, v_detail.xy * vec2(1.0, 0.25), 0.0);
     vec3 n_knit = normalize(n - (knit.x - 0.5) * 2.0 * t - (knit.y - 0.5) * 1.5 * b);
     float sun = max(dot(n_knit, u_sun_direction), 0.0) * sun_visibility(v_world, SHADOW_BIAS_MM);
     vec3 light = v_diffuse + u_sun_irradiance * (sun / 3.14159265);

@@ -8,7 +8,6 @@ in vec3 v_colour;
 in vec4 v_hair;
 
 uniform vec3 u_camera_mm;
-uniform float u_gloss;
 
 out vec4 out_radiance;
 
@@ -27,8 +26,8 @@ void main() {
     vec3 sky = ambient_irradiance(facing) * 0.3183;
     vec3 radiance = v_colour * (sun * (0.3183 * 0.6 * diffuse) + sky);
     float t_dot_h = dot(t, h);
-    radiance += sun * u_gloss * (0.030 * lobe(t_dot_h + 0.06, 90.0)
+    radiance += sun * (0.030 * lobe(t_dot_h + 0.06, 90.0)
         + 1.6 * v_colour * lobe(t_dot_h - 0.12, 24.0));
-    radiance += sky * u_gloss * 0.02;
+    radiance += sky * 0.02;
     out_radiance = vec4(radiance, v_hair.z);
 }

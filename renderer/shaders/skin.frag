@@ -12,8 +12,7 @@ in vec4 v_surface;
 in vec4 v_detail;
 in float v_lid;
 
-uniform sampler2D u_pores;     // slope x, slope y, cavity, mottle
-uniform float u_pore_level;    // mip level of the tile at this distance
+uniform sampler2D u_pores;     // slope x, slope y, cavity, mottle; one level per view
 
 out vec4 out_radiance;
 
@@ -25,10 +24,10 @@ void main() {
     vec3 t = vec3(n.z, 0.0, -n.x);
     vec3 b = cross(n, t);
 
-    vec4 pores = textureLod(u_pores, v_detail.xy, u_pore_level);
+    vec4 pores = textureLod(u_pores, v_detail.xy, 0.0);
     vec2 slope = (pores.xy - 0.5) * (0.95 - 0.3 * v_lid);
     if (v_lid > 0.02) {
-        vec4 crepe = textureLod(u_pores, v_detail.zw * vec2(0.012, 0.075), u_pore_level);
+        vec4 crepe = textureLod(u_pores, v_detail.zw * vec2(0.012, 0.075), 0.0);
         slope += (crepe.xy - 0.5) * vec2(0.25, 1.3) * v_lid;
     }
     slope *= dry;
