@@ -14,7 +14,7 @@ from sqlalchemy import func, or_, select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
-from study.data.jobs import DONE
+from study.data.jobs import DONE, FAILED
 from study.data.participants import IDLE, Participant, locked, record_of
 from study.data.schema import JobRow, ParticipantRow, StudyRow
 from study.data.studies import Study, by_id
@@ -28,12 +28,26 @@ Screen = tuple[int, int]
 
 @dataclass(frozen=True)
 class Readiness:
-    """How far the clips for one screen are. ``progress`` runs from 0 to 1 for the nearest arm."""
+    """How far the clips for one screen are. ``progress`` runs from 0 to 1 for the nearest arm.
+
+    ``is_stuck`` is True when every fitting arm has a clip whose rendering was given up: waiting
+    will not help, a researcher has to look.
+    """
 
     fits: bool
     is_ready: bool
     progress: float
     clips_left: int
+    is_stuck: bool = False
+
+
+@dataclass(frozen=True)
+class _Share:
+    """How far one arm's clips are."""
+
+    progress: float
+    left: int
+    failed: int
 
 
 def readiness(db: Database, participant: Participant, *, screen: Screen | None) -> Readiness:
@@ -41,12 +55,18 @@ def readiness(db: Database, participant: Participant, *, screen: Screen | None) 
     definition = by_id(db, participant.study_id).definition
     fitting = {str(size) for size in fitting_sizes(definition, screen)}
     with db.reading() as session:
-        shares = _progress_of_arms(session, definition)
+        shares = _shares(session, definition)
     mine = [shares[arm] for arm in shares if arm.size in fitting]
     if not mine:
         return Readiness(fits=False, is_ready=False, progress=0.0, clips_left=0)
-    progress, clips_left = max(mine, key=lambda share: (share[1] == 0, share[0]))
-    return Readiness(fits=True, is_ready=clips_left == 0, progress=progress, clips_left=clips_left)
+    nearest = max(mine, key=lambda share: (share.left == 0, not share.failed, share.progress))
+    return Readiness(
+        fits=True,
+        is_ready=nearest.left == 0,
+        progress=nearest.progress,
+        clips_left=nearest.left,
+        is_stuck=nearest.failed > 0,
+    )
 
 
 def assign(
@@ -125,22 +145,21 @@ def _counts(db: Database, session: Session, study_id: int, *, simulated: bool) -
 
 def ready_arms(session: Session, definition: StudyDefinition) -> list[Arm]:
     """Return the arms all of whose clips are rendered."""
-    return [arm for arm, (_, left) in _progress_of_arms(session, definition).items() if left == 0]
+    return [arm for arm, share in _shares(session, definition).items() if share.left == 0]
 
 
-def _progress_of_arms(
-    session: Session, definition: StudyDefinition
-) -> dict[Arm, tuple[float, int]]:
-    """Return for every arm the rendered share of its clips and how many are not ready."""
-    progress = {
-        clip_id: 1.0 if state == DONE else min(share, 0.99)
-        for clip_id, state, share in session.execute(
-            select(JobRow.clip_id, JobRow.state, JobRow.progress)
-        )
-    }
+def _shares(session: Session, definition: StudyDefinition) -> dict[Arm, _Share]:
+    """Return for every arm how far its clips are; only a finished clip counts as whole."""
+    query = select(JobRow.clip_id, JobRow.state, JobRow.progress)
+    states = {clip_id: (state, share) for clip_id, state, share in session.execute(query)}
     shares = {}
     for arm in all_arms(definition):
         specs = definition.clip_specs(read_size(arm.size), arm.orbit_direction).values()
-        done = [progress.get(clip_id, 0.0) for clip_id in {spec.clip_id for spec in specs}]
-        shares[arm] = sum(done) / len(done), sum(share < 1.0 for share in done)
+        mine = [states.get(clip_id, ("", 0.0)) for clip_id in {spec.clip_id for spec in specs}]
+        whole = [1.0 if state == DONE else min(share, 0.99) for state, share in mine]
+        shares[arm] = _Share(
+            progress=sum(whole) / len(whole),
+            left=sum(share < 1.0 for share in whole),
+            failed=sum(state == FAILED for state, _ in mine),
+        )
     return shares

@@ -60,6 +60,26 @@ def test_a_clip_under_way_moves_the_progress_but_is_not_ready(
     assert found.clips_left == 4
 
 
+def test_waiting_for_a_clip_that_was_given_up_is_said_to_be_in_vain(
+    db: Database, walk: Any, wanted: list[WantedClip]
+) -> None:
+    def give_up_next() -> None:
+        for _ in range(jobs.MAX_ATTEMPTS):
+            job = jobs.claim(db, worker="w")
+            assert job is not None
+            jobs.fail(db, job, worker="w", error="no")
+
+    small, everything = (400, 400), (1920, 1080)
+    give_up_next()
+    assert not arms.readiness(db, walk.participant, screen=small).is_stuck
+    render(db, 3)
+    give_up_next()
+    assert arms.readiness(db, walk.participant, screen=small).is_stuck
+    assert not arms.readiness(db, walk.participant, screen=everything).is_stuck
+    render(db, len(wanted) - 5)
+    assert arms.readiness(db, walk.participant, screen=everything).is_ready
+
+
 def test_the_largest_size_that_fits_and_is_ready_is_taken(
     db: Database, enrol_walk: Any, wanted: list[WantedClip]
 ) -> None:
