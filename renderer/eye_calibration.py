@@ -71,8 +71,9 @@ def _diffuse_picture(
     chamber = chamber_irradiance(_UNIFORM_SH, np.eye(3), rims=None, size_px=16)
     target = gl.framebuffer([gl.texture((MEASURE_PX, MEASURE_PX), 4, dtype="f4")])
     black = gl.texture_cube((1, 1), 4, np.zeros((6, 4), np.float16).tobytes(), dtype="f2")
-    program.set(
-        **values
+    # Held until drawn: a texture that nothing refers to is released.
+    diffuse = (
+        values
         | {name: black for name in ("u_static_cube", "u_crowd_cube") if name in values}
         | {
             "u_sun_irradiance": np.zeros(3),
@@ -86,6 +87,7 @@ def _diffuse_picture(
             "u_mm_per_px": 2 * MAP_EDGE_MM / MEASURE_PX,
         }
     )
+    program.set(**diffuse)
     with gl.scope(target, moderngl.CULL_FACE):
         target.clear()
         mesh.render()

@@ -95,6 +95,7 @@ class FrameRenderer:
         return visible
 
     def _draw_eye(self, eye: int, camera: dict[str, object]) -> int:
+        self._eyes.shade(eye, **camera)  # outside the query: it counts what is seen
         query = self.gl.query(samples=True)
         self.gl.wireframe = self.wireframe
         with query:

@@ -1,0 +1,300 @@
+"""The eye on the GPU: physics first, on flat maps whose answers are known."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+import pytest
+
+from renderer import eye_maps
+from renderer.anatomy import CORNEA_IOR
+from renderer.camera import eye_centre_mm, look_at, perspective
+from renderer.clip import ClipSpec
+from renderer.detail import Detail
+from renderer.eyes import APPARENT_GAIN, Eyes, gaze_rotation
+from renderer.iris import IrisMaps
+from renderer.lids import LidRims, anatomical_rims
+from renderer.light import Light, Sky
+from renderer.sclera import ScleraMaps
+from renderer.subsurface import Tissue
+
+ALBEDO = np.array([0.3, 0.2, 0.1], np.float32)
+TISSUE = Tissue(np.full((4, 3), 3.0), np.full((4, 3), 5.0), np.full(4, 0.3))
+OPEN = LidRims(*(np.array([[-40.0, y, 0.0], [40.0, y, 0.0]]) for y in (60.0, -60.0)))
+OFF = Detail.uniform("off")
+DISTANCE_MM = 6000.0
+HALF_MM = 7.0  # half the picture's height at the eye
+
+
+def flat_iris(_seed: int, _colour: str, *, size_px: int) -> IrisMaps:
+    """An even iris, brighter towards +x, without relief."""
+    n = size_px
+    ramp = (1 + 0.4 * np.linspace(-1, 1, n, dtype=np.float32))[None, :, None]
+    ramp = ramp if n > 1 else np.ones((1, 1, 1), np.float32)
+    return IrisMaps(
+        albedo=np.broadcast_to(ramp * ALBEDO, (n, n, 3)),
+        normal=np.broadcast_to(np.array([0, 0, 1], np.float32), (n, n, 3)),
+        height_mm=np.zeros((n, n), np.float32),
+        thickness_mm=np.broadcast_to(np.array([0.05, 0.15, 0.15, 0.05], np.float32), (n, n, 4)),
+        cavity=np.ones((n, n), np.float32),
+    )
+
+
+def flat_sclera(_seed: int, *, size_px: int) -> ScleraMaps:
+    shape = (size_px, size_px, 3)
+    return ScleraMaps(
+        albedo=np.full(shape, 0.6, np.float32),
+        normal=np.broadcast_to(np.array([0, 0, 1], np.float32), shape),
+    )
+
+
+@dataclass
+class Bench:
+    """Eyes under a chosen light, and their linear radiance."""
+
+    gl: moderngl.Context
+
+    def eyes(
+        self,
+        left: Detail,
+        right: Detail = OFF,
+        *,
+        sun: float = 0.0,
+        sky: float = 1.0,
+        rims: tuple[LidRims, LidRims] = (OPEN, OPEN),
+        toward_sun: tuple[float, float, float] = (-0.5, 0.5, math.sqrt(0.5)),
+        has_crowd: bool = True,
+        left_sum: bool = False,
+        **spec: Any,
+    ) -> Eyes:
+        ambient = np.zeros((9, 3))
+        ambient[0] = sky / 0.282095
+        lit = self.gl.texture((1, 1), 1, np.ones(1, np.float32).tobytes(), dtype="f4")
+        light = Light(
+            Sky(np.array(toward_sun), np.full(3, sun), ambient), lit, np.eye(4, dtype=np.float32)
+        )
+        mirrored = np.full((6, 4), sky, np.float16).tobytes()
+        nobody = np.zeros((6, 4), np.float16).tobytes()
+        return Eyes(
+            self.gl,
+            ClipSpec(left=left, right=right, **spec),
+            rims=rims,
+            light=light,
+            static_cube=lambda _size: self.gl.texture_cube((1, 1), 4, mirrored, dtype="f2"),
+            crowd_cube=self.gl.texture_cube((1, 1), 4, nobody, dtype="f2") if has_crowd else None,
+            left_sum=left_sum,
+        )
+
+    def picture(
+        self, eyes: Eyes, eye: int = 0, *, size: tuple[int, int] = (64, 64), azimuth_deg: float = 0
+    ) -> np.ndarray:
+        """Return linear radiance (height, width, 3), row 0 at the bottom, from far away."""
+        turn = math.radians(azimuth_deg)
+        centre = eye_centre_mm(eye)
+        camera = centre + DISTANCE_MM * np.array([math.sin(turn), 0.0, math.cos(turn)])
+        fov_deg = 2 * math.degrees(math.atan(HALF_MM / (DISTANCE_MM - 10)))
+        target = self.gl.framebuffer(
+            [self.gl.texture(size, 4, dtype="f4")], self.gl.depth_texture(size)
+        )
+        target.use()
+        target.clear()
+        eyes.draw(
+            eye,
+            view_matrix=look_at(camera, centre),
+            projection=perspective(fov_deg, size[0] / size[1], 5000, 7000),
+            camera_mm=camera,
+        )
+        pixels = np.frombuffer(target.read(components=3, dtype="f4"), np.float32)
+        return pixels.reshape(size[1], size[0], 3)
+
+
+@pytest.fixture
+def bench(gl: moderngl.Context, monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> Bench:
+    monkeypatch.setenv("OCULARIST_CACHE", str(tmp_path))
+    monkeypatch.setattr(eye_maps, "iris_maps", flat_iris)
+    monkeypatch.setattr(eye_maps, "sclera_maps", flat_sclera)
+    monkeypatch.setattr(eye_maps, "scattering", lambda _colour: TISSUE)
+    monkeypatch.setattr(eye_maps.iris, "mean_albedo", lambda *_: ALBEDO)
+    thickness = flat_iris(0, "", size_px=1).thickness_mm[0, 0]
+    monkeypatch.setattr(eye_maps.iris, "mean_thickness_mm", lambda *_: thickness)
+    monkeypatch.setattr(eye_maps.sclera, "mean_albedo", lambda *_: np.full(3, 0.6))
+    monkeypatch.setattr(eye_maps, "CHAMBER_PX", 16)
+    monkeypatch.setattr(eye_maps, "SHADE_MAP_PX", 64)
+    return Bench(gl)
+
+
+def pupil_mm(pixels: np.ndarray) -> float:
+    """Return the apparent pupil's diameter from the dark area of the picture."""
+    mm_per_px = 2 * HALF_MM / pixels.shape[0]
+    rows, columns = np.indices(pixels.shape[:2])
+    centre_y, centre_x = (pixels.shape[0] - 1) / 2, (pixels.shape[1] - 1) / 2
+    radius = np.hypot(rows - centre_y, columns - centre_x) * mm_per_px
+    iris = np.median(pixels[(radius > 2.8) & (radius < 3.4), 0])
+    dark = np.clip(1 - pixels[..., 0] / iris, 0, 1)[radius < 2.7].sum()
+    return 2 * math.sqrt(float(dark) * mm_per_px**2 / math.pi)
+
+
+def test_refraction_magnifies_the_pupil(bench: Bench) -> None:
+    """4.00 mm looks 4.44 mm wide: 4.48 near the axis (reference 1.3), less off it, by Snell's law.
+
+    The ray along the axis from r = 2.22 mm: slope 16.4 degrees, bent by 4.2, meets 2.00 mm.
+    """
+    refracting = OFF.with_levels(refraction="high", tessellation="ultra")
+    assert pupil_mm(bench.picture(bench.eyes(OFF), size=(200, 200))) == pytest.approx(4.0, abs=0.03)
+    magnified = bench.picture(bench.eyes(refracting), size=(200, 200))
+    assert pupil_mm(magnified) == pytest.approx(4.44, abs=0.02)
+
+
+def test_the_pupils_diameter_is_the_clips(bench: Bench) -> None:
+    wide = bench.picture(bench.eyes(OFF, pupil_mm=5.0), size=(120, 120))
+    assert pupil_mm(wide) == pytest.approx(5.0, abs=0.06)
+
+
+def test_furnace_the_iris_leaves_its_albedo_and_fresnels_share(bench: Bench) -> None:
+    """Under radiance 1 from everywhere: apparent gain x albedo x 0.98^2 + F, within 5 %."""
+    row = Detail.uniform("ultra").with_levels(texture="off", subsurface="off")
+    pixels = bench.picture(bench.eyes(row), size=(96, 96))
+    at = 48 + round(2.6 / (2 * HALF_MM / 96))
+    f0 = ((CORNEA_IOR - 1) / (CORNEA_IOR + 1)) ** 2
+    expected = APPARENT_GAIN * ALBEDO * 0.979**2 + f0
+    np.testing.assert_allclose(pixels[48, at], expected, rtol=0.05)
+
+
+def test_without_cornea_the_iris_is_lambertian(bench: Bench) -> None:
+    pixels = bench.picture(bench.eyes(OFF))
+    np.testing.assert_allclose(pixels[32, 32 + 14], ALBEDO, rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("effect", "level"),
+    [
+        ("refraction", "medium"),
+        ("reflection", "low"),
+        ("subsurface", "medium"),
+        ("caustics", "medium"),
+    ],
+)
+def test_levels_that_the_table_leaves_out_equal_off(bench: Bench, effect: str, level: str) -> None:
+    base = Detail.uniform("high")
+    row, off = base.with_levels(**{effect: level}), base.with_levels(**{effect: "off"})
+    draw = [bench.picture(bench.eyes(d, sun=2.0), azimuth_deg=20) for d in (row, off)]
+    np.testing.assert_array_equal(draw[0], draw[1])
+
+
+def test_levels_that_are_off_leave_no_uniform_behind(bench: Bench) -> None:
+    eyes = bench.eyes(OFF, Detail.uniform("ultra"))
+    names = ("u_caustic_map", "u_thickness", "u_static_cube", "u_crowd_cube", "u_sclera_normal")
+    assert [eyes.is_active(0, name) for name in names] == [False] * 5
+    assert [eyes.is_active(1, name) for name in names] == [True] * 5
+
+
+def test_only_reflection_brings_a_glint_to_the_cornea(bench: Bench) -> None:
+    peaks = {}
+    for level in ("off", "medium", "high"):
+        row = Detail.uniform("low").with_levels(reflection=level, tessellation="ultra")
+        pixels = bench.picture(bench.eyes(row, sun=2.0), size=(160, 160))
+        cornea = np.hypot(*(np.indices((160, 160)) - 79.5)) * 2 * HALF_MM / 160 < 4.0
+        peaks[level] = float(pixels[cornea].max())
+    assert peaks["off"] < 0.7
+    assert peaks["medium"] > peaks["off"] + 0.2
+    assert peaks["high"] > 10 * peaks["medium"]
+
+
+def test_the_glint_lies_towards_the_sun(bench: Bench) -> None:
+    row = Detail.uniform("low").with_levels(reflection="high", tessellation="ultra")
+    pixels = bench.picture(bench.eyes(row, sun=2.0), size=(160, 160))
+    y, x = np.unravel_index(int(np.argmax(pixels[..., 0])), (160, 160))
+    assert x < 70
+    assert y > 90
+
+
+def test_the_caustic_gathers_light_opposite_the_sun(bench: Bench) -> None:
+    row = OFF.with_levels(refraction="high", caustics="high", tessellation="ultra")
+    low_sun = (-math.sin(math.radians(65)), 0.0, math.cos(math.radians(65)))
+    eyes = bench.eyes(row, sun=2.0, sky=0.0, toward_sun=low_sun)
+    pixels = bench.picture(eyes, size=(96, 96))
+    assert pixels[48, 48 + 24, 0] > 1.5 * pixels[48, 48 - 24, 0] > 0
+
+
+def test_gaze_turns_the_eye(bench: Bench) -> None:
+    ahead = bench.picture(bench.eyes(OFF))
+    right = bench.picture(bench.eyes(OFF, gaze_yaw_deg=15.0, gaze_pitch_deg=10.0))
+
+    def darkest(pixels: np.ndarray) -> np.ndarray:
+        return np.argwhere(pixels[..., 2] < 0.02).mean(axis=0)
+
+    disc = np.hypot(*(np.indices((64, 64)) - 31.5)) < 24
+    shift = darkest(np.where(disc[..., None], right, 1)) - darkest(
+        np.where(disc[..., None], ahead, 1)
+    )
+    plane_px = 9.3826 / (2 * HALF_MM / 64)
+    expected = gaze_rotation(15.0, 10.0)[:, 2] * plane_px
+    np.testing.assert_allclose(shift, [expected[1], expected[0]], atol=1.0)
+
+
+def test_the_right_eyes_maps_are_the_lefts_mirrored(bench: Bench) -> None:
+    row = OFF.with_levels(texture="low", tessellation="low")
+    eyes = bench.eyes(row, row)
+    left, right = bench.picture(eyes, 0), bench.picture(eyes, 1)
+    assert left[32, 48, 0] > 1.2 * left[32, 15, 0]
+    np.testing.assert_allclose(left[24:40, 8:56], right[24:40, 8:56][:, ::-1], atol=0.02)
+
+
+def test_the_upper_lid_shades_the_globe(bench: Bench) -> None:
+    lids = (anatomical_rims(0), anatomical_rims(1))
+    shaded = bench.picture(bench.eyes(OFF, sun=2.0, rims=lids))
+    free = bench.picture(bench.eyes(OFF, sun=2.0))
+    middle, top = 32 + 12, 32 + 17  # 2.6 and 3.7 mm above the axis
+    ratio = shaded[..., 0] / np.maximum(free[..., 0], 1e-6)
+    assert ratio[top, 32] < 0.6 * ratio[middle - 20, 44]
+    assert ratio[middle - 20, 44] > 0.6
+
+
+def test_our_integrator_and_the_thesiss_sum_agree_up_to_its_bias(bench: Bench) -> None:
+    row = Detail.uniform("ultra").with_levels(texture="off", reflection="off", sclera="low")
+    ours = bench.picture(bench.eyes(row, sun=2.0))[32, 48]
+    ultra_sum = bench.picture(bench.eyes(row, sun=2.0, left_sum=True))[32, 48]
+    few = row.with_levels(subsurface="high")
+    high_sum = bench.picture(bench.eyes(few, sun=2.0, left_sum=True))[32, 48]
+    np.testing.assert_allclose(ours, ultra_sum, rtol=0.01)
+    assert (high_sum > 1.02 * ours).all()
+
+
+def test_calibrated_lods_have_the_same_iris(bench: Bench) -> None:
+    means = []
+    for level in ("low", "medium", "high", "ultra"):
+        row = Detail.uniform(level).with_levels(texture="off")
+        pixels = bench.picture(bench.eyes(row, preset="calibrated"), size=(96, 96))
+        radius = np.hypot(*(np.indices((96, 96)) - 47.5)) * 2 * HALF_MM / 96
+        mirrored = 0.0207 if level in {"medium", "high", "ultra"} else 0.0
+        means.append(pixels[(radius > 2.7) & (radius < 4.8)].mean(axis=0) - mirrored)
+    np.testing.assert_allclose(means, np.broadcast_to(ALBEDO, (4, 3)), rtol=0.05)
+
+
+def test_the_same_eye_has_the_same_bytes(bench: Bench) -> None:
+    first, second = (
+        bench.picture(bench.eyes(Detail.uniform("ultra"), sun=2.0), azimuth_deg=-35)
+        for _ in range(2)
+    )
+    assert first.tobytes() == second.tobytes()
+
+
+def test_ultra_reflection_asks_for_the_crowd(bench: Bench) -> None:
+    with pytest.raises(ValueError, match="reflection=ultra mirrors moving people"):
+        bench.eyes(Detail.uniform("ultra"), has_crowd=False)
+
+
+def test_meshes_are_seen_when_facets_are_flat(bench: Bench) -> None:
+    """Off has the lowest mesh's facets: fewer shades of the white than vertex normals give."""
+
+    def shades(level: str) -> int:
+        row = OFF.with_levels(tessellation=level)
+        pixels = bench.picture(bench.eyes(row, sun=2.0, sky=0.0))
+        radius = np.hypot(*(np.indices((64, 64)) - 31.5)) * 2 * HALF_MM / 64
+        return len(np.unique(np.round(pixels[radius > 7.2, 0], 4)))
+
+    assert shades("off") < 0.5 * shades("low")
