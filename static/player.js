@@ -25,13 +25,14 @@ export class Player {
     for (const button of stage.querySelectorAll("[data-play]")) {
       button.addEventListener("click", () => this.play());
     }
-    this.layOut();
+    this.show();
   }
 
   /** Leave the stage for good. */
   close() {
     this.unwatchScreen();
     document.removeEventListener("visibilitychange", this.hiding);
+    delete document.documentElement.dataset.view;
     this.video.removeAttribute("src");
     this.video.load();
   }
@@ -65,8 +66,6 @@ export class Player {
   layOut() {
     const ratio = devicePixelRatio;
     const { width, height } = this.options;
-    // At least the whole window: while a clip runs nothing but its surround is to be seen.
-    this.stage.style.height = `${Math.ceil(Math.max(height / ratio + 1, innerHeight))}px`;
     const stage = this.stage.getBoundingClientRect();
     // Browsers lay out in 1/64 pixel and round down: without the small addition 640 device pixels
     // at a ratio of 1.5 become 639.98, and the whole clip is resampled.
@@ -87,14 +86,21 @@ export class Player {
     );
   }
 
+  /** Let the stage fill the window. */
+  show() {
+    document.documentElement.dataset.view = "clip";
+    scrollTo(0, 0);
+    this.layOut();
+  }
+
   async play() {
+    this.show();
     if (!this.fits) await this.takeTheScreen();
     if (!this.fits) {
       this.options.onTooSmall();
       return;
     }
     this.layOut();
-    this.stage.scrollIntoView({ block: "start" });
     this.state = "starting";
     this.begin();
     try {

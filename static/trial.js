@@ -34,6 +34,7 @@ export function startTrial(main, { outbox, clips, start }) {
   stage.querySelector("[data-to-questions]").addEventListener("click", toQuestions);
   form.querySelector("[data-again]")?.addEventListener("click", () => player.play());
   form.addEventListener("submit", submit);
+  if (main.dataset.open === "questions") toQuestions();
   load();
 
   async function load() {
@@ -79,6 +80,7 @@ export function startTrial(main, { outbox, clips, start }) {
   }
 
   function toQuestions() {
+    document.documentElement.dataset.view = "questions";
     main.querySelector(".questions").scrollIntoView();
     main.querySelector(".questions h2").focus({ preventScroll: true });
   }
