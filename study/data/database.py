@@ -132,7 +132,10 @@ def _engine(url: URL) -> Engine:
     path.parent.mkdir(parents=True, exist_ok=True)
     # Answers about eyesight are health data: nobody else on the machine may read the file.
     os.close(os.open(path, os.O_CREAT | os.O_RDWR, 0o600))
-    engine = create_engine(url, connect_args={"timeout": BUSY_TIMEOUT_MS / 1000})
+    # As many connections as the site has threads: nobody waits for one behind a waiting writer.
+    engine = create_engine(
+        url, connect_args={"timeout": BUSY_TIMEOUT_MS / 1000}, pool_size=10, max_overflow=40
+    )
     event.listen(engine, "connect", _set_up_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine

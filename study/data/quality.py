@@ -47,9 +47,24 @@ class Quality:
     problems: Sequence[Problem]
 
 
-def quality(db: Database, study: Study, *, simulated: bool = False) -> Quality:
-    """Return how good the data of the real or of the simulated participants are."""
-    people = [one for one in collect(db, study) if one.row.simulated == simulated]
+@dataclass(frozen=True)
+class Qualities:
+    """Real and simulated participants apart."""
+
+    real: Quality
+    simulated: Quality
+
+
+def quality(db: Database, study: Study) -> Qualities:
+    """Return how good the data are that were collected so far."""
+    people = collect(db, study)
+    return Qualities(
+        real=_quality(study, [one for one in people if not one.row.simulated]),
+        simulated=_quality(study, [one for one in people if one.row.simulated]),
+    )
+
+
+def _quality(study: Study, people: Sequence[Collected]) -> Quality:
     done = [
         trial
         for person in people

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
@@ -133,6 +134,16 @@ def test_directions_are_balanced_over_people_who_come_one_by_one(
         taken = [counts[Arm(LARGE, direction)] for direction in ("leftward", "rightward")]
         assert sum(taken) == seed + 1
         assert max(taken) - min(taken) <= 1
+
+
+def test_directions_stay_balanced_when_many_come_at_once(
+    db: Database, study: Study, enrol_walk: Any
+) -> None:
+    walks = [enrol_walk(seed) for seed in range(12)]
+    with ThreadPoolExecutor(6) as pool:
+        list(pool.map(lambda walk: walk.begin(), walks))
+    counts = arms.counts(db, study)
+    assert [counts[Arm(LARGE, direction)] for direction in ("leftward", "rightward")] == [6, 6]
 
 
 def test_an_expired_lease_no_longer_counts_but_its_participant_may_go_on(
