@@ -85,7 +85,8 @@ class Head:
         for mesh in [*(self._close if close else self._distant), self._mesh("cap")]:
             mesh.draw(skin, clip, camera_mm=camera)
         fabric.set(**view, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
-        self._mesh("cloth").draw(fabric, clip, camera_mm=camera)
+        self.gl.disable(moderngl.CULL_FACE)  # the roll neck shows its inside
+        self._mesh("cloth").draw(fabric, clip)
 
     def draw_hair(
         self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light

@@ -184,7 +184,9 @@ def _control_net(inner: Floats, is_upper: Floats, socket: Socket) -> tuple[Float
     thick = MARGIN_MM * (1 - 0.45 * canthus) * (1.0 - 0.1 * is_upper)
     edge = inner + margin * thick[:, None]
     # The first ring lies inside the globe: no light shines between lid and globe.
-    tuck = radial * TUCK_MM
+    # Off the globe, at the canthi, it runs straight back under the conjunctiva.
+    off = np.clip(np.linalg.norm(inner, axis=1, keepdims=True) - 12.5, 0.0, 1.0)
+    tuck = radial * TUCK_MM * (1 - off) + (inner - [0.0, 0.0, 3.5]) * off
     rows = [tuck, inner - radial * 0.15]
     rows += [inner + margin * (thick * share)[:, None] for share in (0.12, 0.45, 0.8)]
     rim_control = len(rows)

@@ -158,9 +158,9 @@ def _pores(rng: np.random.Generator, *, count: int) -> Floats:
 
 
 def _blur_noise(rng: np.random.Generator, size_mm: float) -> Floats:
-    """Return periodic noise of unit variance with features of about ``size_mm``."""
+    """Return periodic noise of zero mean and unit variance with features of about ``size_mm``."""
     noise = _blur(rng.standard_normal((TILE_PX, TILE_PX)), size_mm)
-    return np.asarray(noise / noise.std())
+    return np.asarray((noise - noise.mean()) / noise.std())
 
 
 def _blur(field: Floats, size_mm: float) -> Floats:

@@ -16,7 +16,7 @@ out vec4 out_radiance;
 const float SHADOW_BIAS_MM = 2.0;
 
 void main() {
-    vec3 n = normalize(v_normal);
+    vec3 n = normalize(gl_FrontFacing ? v_normal : -v_normal);
     vec3 t = normalize(vec3(n.z, 0.0, -n.x) + vec3(1e-4, 0.0, 0.0));
     vec3 b = cross(n, t);
     vec4 knit = textureLod(u_knit, v_detail.xy * vec2(1.0, 0.25), 0.0);

@@ -1,0 +1,109 @@
+"""Fitted lids: rims on the globe, no gap, nothing of the globe through the skin, thickness."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from renderer import lid_fit
+from renderer.caruncle import caruncle, outer_membrane
+from renderer.face_mesh import face_mesh, to_patch, to_world
+from renderer.lids import LidRims
+
+
+def over_globe(points: np.ndarray) -> np.ndarray:
+    """Return how far points lie above the globe's front surface, NaN beside it, in mm."""
+    r = np.hypot(points[..., 0], points[..., 1])
+    beside = (r > 11.0) | (points[..., 2] < 0)
+    return np.where(beside, np.nan, points[..., 2] - lid_fit.globe_height(r))
+
+
+@pytest.mark.parametrize("eye", [0, 1])
+def test_rims_are_curves_in_ascending_x_with_the_nose_on_the_right_side(eye: int) -> None:
+    rims = lid_fit.lid_rims(eye)
+    for curve in (rims.upper_mm, rims.lower_mm):
+        assert (np.diff(curve[:, 0]) > 0).all()
+        nose = curve[-1] if eye == 0 else curve[0]
+        assert abs(nose[0]) == pytest.approx(-lid_fit.MEDIAL_MM[0])
+    assert isinstance(rims, LidRims)
+
+
+def test_both_eyes_have_mirrored_rims() -> None:
+    left, right = lid_fit.lid_rims(0), lid_fit.lid_rims(1)
+    np.testing.assert_allclose(left.upper_mm[::-1] * [-1, 1, 1], right.upper_mm)
+
+
+def test_the_opening_is_that_of_an_average_eye() -> None:
+    upper, lower = lid_fit.rim_curves()
+    x = np.linspace(-8, 8, 33)
+    opening = np.interp(x, upper[:, 0], upper[:, 1]) - np.interp(x, lower[:, 0], lower[:, 1])
+    assert 8.0 < opening.max() < 10.5
+    assert 28.0 < upper[-1, 0] - upper[0, 0] < 31.0
+    assert upper[np.argmax(upper[:, 1]), 0] < 0 < lower[np.argmin(lower[:, 1]), 0]
+
+
+def test_rims_touch_the_globe_wherever_they_lie_on_it() -> None:
+    for curve in lid_fit.rim_curves():
+        middle = np.abs(curve[:, 0]) < 7.0
+        gap = over_globe(curve[middle])
+        np.testing.assert_allclose(gap, lid_fit.CLEARANCE_MM, atol=1e-6)
+
+
+@pytest.mark.parametrize("eye", [0, 1])
+def test_the_globe_never_pokes_through_the_skin(eye: int) -> None:
+    patch = face_mesh().lids[eye]
+    skin = patch.points_mm[:, patch.rim_row :]
+    assert np.nanmin(over_globe(skin)) > 0.5
+
+
+@pytest.mark.parametrize("eye", [0, 1])
+def test_no_light_passes_between_lid_and_globe(eye: int) -> None:
+    patch = face_mesh().lids[eye]
+    ring = patch.points_mm[:, 0]
+    inside = np.linalg.norm(ring, axis=1) < 11.75
+    on_globe = np.abs(ring[:, 0]) < 8.0
+    assert inside[on_globe].all()
+
+
+def test_lids_are_about_two_millimetres_thick() -> None:
+    patch = face_mesh().lids[1]
+    middle = (np.abs(patch.points_mm[:, 2, 0]) < 7.0) & (patch.is_upper > 0.9)
+    thickness = patch.across_mm[middle, patch.rim_row]
+    assert 1.3 < thickness.mean() < 2.6
+
+
+def test_the_upper_lid_has_a_crease() -> None:
+    patch = face_mesh().lids[1]
+    column = int(np.argmin(np.abs(patch.points_mm[:, 2, 0]) + 9 * (patch.is_upper < 0.5)))
+    profile = patch.points_mm[column, patch.rim_row :]
+    near = profile[:, 1] < profile[0, 1] + 6.0
+    # Going up, depth falls along the lid to the crease, then rises over the fold.
+    z = profile[near, 2]
+    deepest = int(np.argmin(z))
+    assert 0 < deepest < len(z) - 1
+    assert z[-1] > z[deepest] + 0.8
+
+
+def test_patches_end_on_the_face() -> None:
+    face = face_mesh()
+    for eye in (0, 1):
+        end = face.lids[eye].points_mm[:, -1]
+        height = face.sockets[eye].height(end[:, :2])
+        np.testing.assert_allclose(end[:, 2], height, atol=0.15)
+
+
+def test_corners_are_closed_and_dive_under_the_globe() -> None:
+    inner, _, bump, _ = caruncle()
+    outer, _, _ = outer_membrane()
+    assert bump.max() > 0.9
+    for points in (inner, outer):
+        height = over_globe(points)
+        assert np.nanmin(height) < -0.1
+    assert inner[bump > 0.5][:, 0].max() < -11.0
+
+
+def test_patch_and_world_space_are_inverse() -> None:
+    points = np.array([[3.0, 4.0, 5.0], [-7.0, 1.0, 0.5]])
+    for eye in (0, 1):
+        np.testing.assert_allclose(to_patch(to_world(points, eye), eye), points)
+    assert to_world(points, 0)[0, 0] == pytest.approx(-34.0)

@@ -1,0 +1,104 @@
+"""Skin: paint, the tile of pores, scattering and skylight."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from renderer import skin, skin_light
+from renderer.face_mesh import face_mesh, triangles_of
+from renderer.light import Sky
+from renderer.sky_visibility import DIRECTIONS, look_up
+from renderer.subdivide import subdivide
+from renderer.sun_shadow import orthographic
+
+
+def plane(size: int = 41, step_mm: float = 0.5) -> tuple[np.ndarray, np.ndarray]:
+    """Return points and triangles of a flat square grid facing +z."""
+    x, y = np.meshgrid(np.arange(size) * step_mm, np.arange(size) * step_mm, indexing="ij")
+    points = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(size - 1), np.arange(size - 1), indexing="ij")
+    corner = (i * size + j).ravel()
+    quads = np.stack([corner, corner + size, corner + size + 1, corner + 1], axis=1)
+    return points, triangles_of(quads)
+
+
+def even_sky(radiance: float) -> Sky:
+    harmonics = np.zeros((9, 3))
+    harmonics[0] = radiance / 0.282095
+    return Sky(np.array([0.0, 0.0, 1.0]), np.full(3, 2.0), harmonics)
+
+
+def test_albedo_is_physical_and_skin_is_redder_than_blue() -> None:
+    for part in (face_mesh().coarse, face_mesh().patches[0]):
+        albedo, gloss = skin.paint(part)
+        assert albedo.min() > 0.0
+        assert albedo.max() < 0.8
+        assert (albedo[:, 0] > albedo[:, 2]).all()
+        assert gloss.min() >= 0.0
+        assert gloss.max() <= 1.0
+
+
+def test_the_wet_rim_is_redder_than_the_cheek() -> None:
+    patch = face_mesh().patches[1]
+    albedo, _ = skin.paint(patch)
+    wet, dry = patch.wet > 0.9, (patch.lid < 0.1) & (patch.margin < 0.01)
+    ratio = albedo[:, 1] / albedo[:, 0]
+    assert ratio[wet].mean() < ratio[dry].mean() - 0.05
+
+
+def test_the_pore_tile_repeats_without_a_seam() -> None:
+    tile = skin.pore_tile().astype(float)
+    for axis in (0, 1):
+        inside = np.abs(np.diff(tile, axis=axis)).mean()
+        across = np.abs(np.take(tile, 0, axis) - np.take(tile, -1, axis)).mean()
+        assert across < 1.5 * inside
+    assert tile[..., :2].mean() == pytest.approx(127.5, abs=1.0)
+    assert tile[..., 3].mean() == pytest.approx(127.5, abs=3.0)
+
+
+def test_scattering_keeps_energy_and_spreads_red_the_furthest() -> None:
+    points, triangles = plane()
+    spot = np.zeros((len(points), 3))
+    middle = len(points) // 2
+    spot[middle] = 1.0
+    spread = skin_light.scatter(points, triangles, spot)
+    np.testing.assert_allclose(spread.sum(axis=0), 1.0, rtol=0.02)
+    d2 = ((points - points[middle]) ** 2).sum(axis=1)
+    width = (spread * d2[:, None]).sum(axis=0)
+    assert width[0] > 2 * width[1] > 2 * width[2]
+
+
+def test_an_open_white_plane_under_an_even_sky_sends_its_radiance_back() -> None:
+    points, triangles = plane(11)
+    normals = np.tile([0.0, 0, 1], (len(points), 1))
+    sky = even_sky(0.5)
+    free = np.ones((len(points), DIRECTIONS), dtype=np.float32)
+    lit = skin_light.light_skin(
+        points, normals, triangles, sky=sky, open_sky=free, sun=np.zeros(len(points))
+    )
+    np.testing.assert_allclose(lit.diffuse, 0.5, rtol=1e-3)
+    np.testing.assert_allclose(lit.ambient, 1.0, rtol=1e-6)
+    lit = skin_light.light_skin(
+        points, normals, triangles, sky=sky, open_sky=free, sun=np.ones(len(points))
+    )
+    np.testing.assert_allclose(lit.diffuse, 0.5 + 2.0 / np.pi, rtol=1e-3)
+
+
+def test_depth_maps_cover_what_lies_behind_and_free_what_lies_outside() -> None:
+    matrix = orthographic(np.array([0.0, 0, 1]), (0.0, 0.0, 0.0), half_mm=10.0, depth_mm=100.0)
+    depth = np.full((32, 32), 0.5, dtype=np.float32)  # a wall through the origin
+    points = np.array([[0.0, 0, 5], [0.0, 0, -5], [50.0, 0, -5]])
+    np.testing.assert_allclose(look_up(depth, matrix, points), [1.0, 0.0, 1.0])
+
+
+def test_subdivision_rounds_a_cube_and_keeps_it_closed() -> None:
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
+    faces = np.array(
+        [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    )
+    points, quads = subdivide(corners, faces, levels=3)
+    assert len(quads) == 6 * 4**3
+    assert len(points) - len(quads) == 2  # Euler: V - E + F = 2 with E = 2 F
+    radius = np.linalg.norm(points, axis=1)
+    assert radius.max() / radius.min() < 1.25
