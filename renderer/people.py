@@ -35,13 +35,13 @@ PEOPLE: Final = (
     Person(
         "walker", {"gender": 1.0, "age": 0.58, "muscle": 0.6, "weight": 0.5, "height": 0.55},
         {"caucasian": 1.0}, skin=(0.50, 0.30, 0.215), hair=(0.055, 0.032, 0.018),
-        stature_mm=1800.0, top=(0.36, 0.47, 0.66), bottom=(0.035, 0.042, 0.065),
+        stature_mm=1800.0, top=(0.70, 0.74, 0.80), bottom=(0.035, 0.042, 0.065),
         iris=(0.10, 0.14, 0.17),
     ),
     Person(
         "waver", {"gender": 0.0, "age": 0.5, "muscle": 0.5, "weight": 0.45, "height": 0.5},
         {"african": 0.6, "caucasian": 0.4}, skin=(0.33, 0.185, 0.115), hair=(0.016, 0.011, 0.009),
-        top=(0.62, 0.085, 0.055), bottom=(0.060, 0.095, 0.19), has_long_hair=True,
+        top=(0.80, 0.22, 0.10), bottom=(0.060, 0.095, 0.19), has_long_hair=True,
         stature_mm=1670.0, smile=0.8, has_short_sleeves=True,
     ),
     Person(

@@ -65,7 +65,7 @@ def _town(rng: np.random.Generator) -> list[Building]:
                     roofs[int(rng.integers(len(roofs)))],
                 )
             )
-            azimuth += turn
+            azimuth += turn * 0.985  # neighbours overlap, so that no sky shows between
     return houses
 
 

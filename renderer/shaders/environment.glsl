@@ -28,8 +28,11 @@ vec3 clear_sky(vec3 d) {
 
 float noise_lod(float footprint) { return log2(max(footprint * 512.0, 1.0)); }
 
+// Where the wind has brought the clouds: broken cumulus in the sky that the corneas reflect.
+const vec2 CLOUD_DRIFT = vec2(0.25, 0.85);
+
 float cloud_depth(vec2 p, float lod) {
-    float shape = 0.66 * textureLod(u_noise, p * 0.19 + 0.2, lod - 2.4).r
+    float shape = 0.66 * textureLod(u_noise, p * 0.19 + CLOUD_DRIFT, lod - 2.4).r
                 + 0.24 * textureLod(u_noise, p * 0.53 + 0.4, lod - 0.9).g
                 + 0.10 * textureLod(u_noise, p * 1.71, lod + 0.8).g;
     return smoothstep(0.54, 0.80, shape);
@@ -42,9 +45,10 @@ vec3 clouds_over(vec3 sky, vec3 d) {
     float lod = noise_lod(u_footprint_rad * slope * slope);
     float depth = cloud_depth(p, lod);
     vec2 sunward = p + normalize(u_environment_sun.xz + 1e-4) * 0.25;
-    float towards_sun = smoothstep(0.35, 0.95, textureLod(u_noise, sunward * 0.19 + 0.2, lod - 2.4).r);
+    float towards_sun = smoothstep(0.35, 0.95, textureLod(u_noise, sunward * 0.19 + CLOUD_DRIFT, lod - 2.4).r);
     float facing = max(dot(d, u_environment_sun), 0.0);
-    float silver = 1.0 + 2.0 * facing * facing * facing * facing * (1.0 - 0.8 * depth);
+    // Thin cloud scatters forwards: its edges near the sun are several times as bright as snow.
+    float silver = 1.0 + 8.0 * pow(facing, 6.0) * (1.0 - 0.55 * depth);
     vec3 lit = u_environment_sun_irradiance * mix(1.25, 0.40, towards_sun * depth) * silver;
     vec3 cloud = (lit + 0.8 * u_environment_sky_irradiance) / PI_ENVIRONMENT;
     // No cloud stands before the sun itself: its light is a separate, unshadowed term.
