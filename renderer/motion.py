@@ -7,7 +7,7 @@ the character's left, +y up, +z forwards; angles in degrees, lengths in mm.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -219,6 +219,3 @@ def _drift(time_s: float, seed: int, channel: int) -> float:
     rng = np.random.Generator(np.random.PCG64([seed, channel]))
     periods, starts = rng.uniform(3.0, 11.0, 3), rng.uniform(0.0, 1.0, 3)
     return float(np.sin(2 * np.pi * (time_s / periods + starts)).sum() / 2.2)
-
-
-Motion = Callable[[Rig, float], Pose]
