@@ -3,11 +3,17 @@
 import { Outbox } from "./outbox.js";
 import { ClipStore } from "./preload.js";
 import { startAbout } from "./about.js";
-import { startNext } from "./next.js";
+import { startNext, startStop } from "./leaving.js";
 import { startPreparing } from "./preparing.js";
 import { startTrial } from "./trial.js";
 
-const PAGES = { about: startAbout, preparing: startPreparing, trial: startTrial, next: startNext };
+const PAGES = {
+  about: startAbout,
+  preparing: startPreparing,
+  trial: startTrial,
+  next: startNext,
+  stop: startStop,
+};
 const clips = new ClipStore();
 const outboxes = new Map(); // session -> Outbox
 let close = () => {};

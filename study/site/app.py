@@ -23,6 +23,7 @@ from study.site import (
     door,
     downloads,
     gallery,
+    health,
     leaving,
     news,
     preparing,
@@ -47,6 +48,7 @@ ROOMS = (
     door,
     dashboard,
     gallery,
+    health,
     results,
     downloads,
 )

@@ -63,17 +63,18 @@ def overview(here: Here, researcher: ResearcherHere) -> Response:
     """Show the study at a glance."""
     study = here.study()
     found = dashboard.summary(here.db, study)
+    good = quality(here.db, study)
     return here.page(
         "researcher/overview.html",
         **frame(study, researcher, "", "Overview"),
         found=found,
         kinds=[
-            (label, counts, quality(here.db, study, simulated=is_simulated), is_simulated)
-            for label, counts, is_simulated in (
-                ("People", found.real, False),
-                ("Simulated", found.simulated, True),
-            )
-            if counts.arrived or not is_simulated
+            ("People", found.real, good.real, False),
+            *(
+                [("Simulated", found.simulated, good.simulated, True)]
+                if found.simulated.arrived
+                else []
+            ),
         ],
         jobs=_interesting(jobs.all_jobs(here.db, wanted_ids(study))),
         clips=_clips_by_id(study),

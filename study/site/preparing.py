@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated, Any, Final
 
 from fastapi import APIRouter, Query
 from fastapi.responses import HTMLResponse, Response
@@ -19,6 +19,10 @@ from study.site.media import to_preload
 from study.site.place import Here
 
 router = APIRouter()
+STUCK: Final = (
+    "Something holds the clips up. The researcher can see it; please come back later. "
+    "Code: CLIPS-STUCK"
+)
 Pixels = Annotated[int, Query(ge=1, le=100_000)]
 
 
@@ -42,13 +46,14 @@ def state(
 
     The arm is leased here, because its clips are what the browser loads.
     """
+    participants.seen(here.db, visitor.participant)  # who waits here is at work
     screen = (screen_width_px, screen_height_px)
     ready = arms.readiness(here.db, visitor.participant, screen=screen)
     news = {
         "fits": ready.fits,
         "is_ready": False,
         "progress": round(ready.progress, 4),
-        "wait": _wait(here, visitor, screen),
+        "wait": STUCK if ready.is_stuck else _wait(here, visitor, screen),
         "clips": [],
     }
     if not ready.is_ready:
@@ -61,17 +66,18 @@ def state(
 def _clips(here: Here, participant: Participant) -> list[dict[str, Any]] | None:
     """Return what to load, each clip once and in order, or None while a file is missing."""
     ids = dict.fromkeys(trials.clip_ids(here.db, participant))
-    records = [here.clips.record(clip_id) for clip_id in ids]
-    found = [to_preload(record) for record in records if record is not None]
-    return found if len(found) == len(ids) else None
+    records = {clip_id: here.clips.record(clip_id) for clip_id in ids}
+    missing = [clip_id for clip_id, record in records.items() if record is None]
+    if missing:  # rendered once, and lost since: have them made again
+        jobs.requeue(here.db, missing)
+        return None
+    return [to_preload(record) for record in records.values() if record is not None]
 
 
 def _wait(here: Here, visitor: Visitor, screen: Screen) -> str:
     """Say in calm words how long the nearest complete set of clips takes."""
     definition = visitor.study.definition
     nearest = _nearest(here, visitor, arms.fitting_sizes(definition, screen))
-    if nearest is not None and nearest.failed:
-        return "Something holds the clips up. The researcher can see it; please come back later."
     if nearest is None or nearest.left_s is None:
         return "We cannot say yet how long it takes."
     if nearest.left_s < 60:

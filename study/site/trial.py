@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import answers, events, participants, trials
+from study.data import answers, events, jobs, participants, trials
 from study.data.progress import Step
 from study.data.refusals import NotReachedError, NotWatchedError
 from study.design.questions import AnswerError
@@ -98,7 +98,8 @@ def _to_come(here: Here, every: tuple[trials.Trial, ...], current: trials.Trial)
 
 
 def _missing(request: Request, here: Here, visitor: Visitor, found: trials.Trial) -> Response:
-    """Stop visibly: the clip of this trial is not there. The dashboard shows it, too."""
+    """Stop visibly where a clip is not there: the dashboard shows it, a worker makes it again."""
+    jobs.requeue(here.db, [found.clip_id])
     events.record(
         here.db,
         visitor.participant,

@@ -20,7 +20,7 @@ from imageio_ffmpeg import write_frames
 
 from renderer.clip import ClipSpec
 from renderer.manifest import ClipRecord, Manifest, code_version, write_manifest
-from study.data import jobs, researchers, studies
+from study.data import export, jobs, participants, researchers, studies
 from study.data.database import Database, open_database
 from study.design.definition import StudyDefinition, parse_definition, read_definition
 from study.settings import Settings
@@ -82,6 +82,12 @@ class Site:
     def guest(self, **headers: str) -> Guest:
         """Return a browser that nobody has used."""
         return Guest(self.url, **headers)
+
+    def people(self) -> list[participants.Participant]:
+        """Return everybody who takes part, in order of arrival."""
+        names = export.tables(self.db, self.study).participants["participant"]
+        found = [participants.by_public_id(self.db, self.study, name) for name in names]
+        return [person for person in found if person is not None]
 
     @property
     def simulation(self) -> dict[str, str]:

@@ -9,7 +9,7 @@ import pytest
 
 from study import bots
 from study.browser import BotError
-from study.data import events, export, participants
+from study.data import events, export
 from study.site.signatures import simulation_token
 
 
@@ -31,13 +31,11 @@ def test_a_bot_completes_a_session_and_the_export_holds_exactly_its_answers(site
     assert list(tables.participants["simulated"]) == [True, True]
     assert list(tables.participants["status"]) == ["completed", "completed"]
     given: dict[tuple[str, int, str], Any] = {}
-    for name in tables.participants["participant"]:
-        person = participants.by_public_id(site.db, site.study, name)
-        assert person is not None
+    for person in site.people():
         for event in events.history(site.db, person):
             if event.kind == "answered":
                 for question, value in event.payload["answers"].items():
-                    given[name, event.position or 0, question] = value
+                    given[person.public_id, event.position or 0, question] = value
     exported = {
         (row["participant"], int(row["trial"].rpartition("-")[2]), f"rating_{row['eye']}"): (
             None if row.isna()["rating"] else int(row["rating"])

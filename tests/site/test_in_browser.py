@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 
-from study.data import completion, events, export, participants, trials
+from study.data import completion, events, export, trials
 
 WAIT_MS = 30_000  # a loaded machine is no failure
 
@@ -92,13 +92,6 @@ def saved(page: Page, text: str) -> None:
     expect(page.locator(".saved [role=status]")).to_have_text(text)
 
 
-def the_participant(site: Any) -> participants.Participant:
-    [name] = export.tables(site.db, site.study).participants["participant"]
-    found = participants.by_public_id(site.db, site.study, name)
-    assert found is not None
-    return found
-
-
 def test_a_session_survives_reload_back_double_click_and_a_lost_connection(
     site: Any, page: Page, context: BrowserContext
 ) -> None:
@@ -144,7 +137,7 @@ def test_a_session_survives_reload_back_double_click_and_a_lost_connection(
     watch(page)
     rate(page, 3, 3)
     page.get_by_role("button", name="Finish").click()
-    code = completion.code(site.db, the_participant(site)) if at_thanks(page, site) else None
+    code = completion.code(site.db, site.people()[0]) if at_thanks(page, site) else None
     assert code is not None
     expect(page.locator("#completion-code")).to_have_text(code)
 
@@ -156,11 +149,11 @@ def test_a_session_survives_reload_back_double_click_and_a_lost_connection(
     assert (tables.comparisons["response_ms"] > 0).all()
     finals = [
         e
-        for e in events.history(site.db, the_participant(site))
+        for e in events.history(site.db, site.people()[0])
         if e.kind == "answered" and e.payload["is_final"]
     ]
     assert [e.position for e in finals] == [1, 2, 3]
-    kinds = {e.kind for e in events.history(site.db, the_participant(site))}
+    kinds = {e.kind for e in events.history(site.db, site.people()[0])}
     assert "amended" not in kinds
 
 
@@ -176,13 +169,13 @@ def test_every_frame_is_counted_for_every_play(site: Any, page: Page) -> None:
     page.wait_for_function("document.querySelector('.stage').dataset.state === 'playing'")
     state(page, "watched")
     saved(page, "Saved")
-    plays = [
-        e.payload for e in events.history(site.db, the_participant(site)) if e.kind == "played"
-    ]
+    plays = [e.payload for e in events.history(site.db, site.people()[0]) if e.kind == "played"]
     assert len(plays) == 2
     for play in plays:
         assert play["expected_frames"] == 15
-        assert 0 < play["presented_frames"] + play["dropped_frames"] <= 16
+        # How many are dropped is the machine's business; that they are counted is ours.
+        assert 0 < play["presented_frames"] <= 16
+        assert 0 <= play["dropped_frames"] <= 16
         assert play["is_complete"] is True
         assert play["device_pixel_ratio"] == 1.5
         assert play["shown_scale"] == 1.0
@@ -204,7 +197,7 @@ def test_a_covered_page_interrupts_the_play(site: Any, page: Page) -> None:
     state(page, "interrupted")
     expect(page.locator("input[name=rating_left]").first).to_be_disabled()
     saved(page, "Saved")
-    [trial] = trials.all_trials(site.db, the_participant(site))[:1]
+    [trial] = trials.all_trials(site.db, site.people()[0])[:1]
     assert trial.views == 0
 
 
@@ -220,9 +213,7 @@ def test_a_broken_clip_stops_with_a_code_and_a_next_step(site: Any, page: Page) 
     page.unroute("**/clips/*.mp4")
     page.locator(".card[data-when=broken]").get_by_role("button", name="Try again").click()
     state(page, "ready")
-    problems = [
-        e.payload for e in events.history(site.db, the_participant(site)) if e.kind == "problem"
-    ]
+    problems = [e.payload for e in events.history(site.db, site.people()[0]) if e.kind == "problem"]
     assert problems == [{"code": "CLIP-HTTP-404"}]
 
 
@@ -283,7 +274,7 @@ def test_a_shared_computer_waits_for_the_last_answers(
     page.get_by_role("button", name="Start for a new person").click()
     expect(page.get_by_role("link", name="Begin")).to_be_visible()
     assert context.cookies() == []
-    found = trials.at(site.db, the_participant(site), 1)
+    found = trials.at(site.db, site.people()[0], 1)
     assert found is not None
     assert found.answers["rating_left"] == 5
 
@@ -299,3 +290,18 @@ def test_the_dashboard_renews_itself(site: Any, page: Page) -> None:
     person.client.close()
     expect(page.locator("#people dd").first).to_have_text("1")
     expect(page.locator("[data-stamp]")).to_contain_text("As of")
+
+
+def test_ending_waits_for_the_last_answers(site: Any, page: Page) -> None:
+    walk_to_trial(page, site.url)
+    watch(page)
+    page.route("**/events", lambda route: route.abort())
+    page.locator("input[name=rating_left][value='5']").check()
+    saved(page, "Not yet saved – kept in this browser, trying again")
+    page.goto(f"{site.url}/stop")
+    page.get_by_role("button", name="End and keep my answers").click()
+    page.unroute("**/events")
+    expect(page.get_by_text("The answers you gave are kept.")).to_be_visible()
+    found = trials.at(site.db, site.people()[0], 1)
+    assert found is not None
+    assert found.answers["rating_left"] == 5

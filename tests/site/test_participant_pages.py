@@ -8,15 +8,6 @@ from study.data import completion, export, participants, progress, trials
 from study.data.database import Database
 
 
-def the_participant(site: Any) -> participants.Participant:
-    """Return the only participant of a test's site."""
-    tables = export.tables(site.db, site.study)
-    [name] = tables.participants["participant"]
-    found = participants.by_public_id(site.db, site.study, name)
-    assert found is not None
-    return found
-
-
 def answers_at(db: Database, participant: participants.Participant, position: int) -> Any:
     found = trials.at(db, participant, position)
     assert found is not None
@@ -44,7 +35,7 @@ def test_a_participant_goes_from_the_first_page_to_the_completion_code(
         assert guest.watch().json() == {"ok": True, "new": True}
         guest.finish(**ANSWERS, **RATINGS, response_ms="8123")
     assert guest.at == "/thanks"
-    code = completion.code(site.db, the_participant(site))
+    code = completion.code(site.db, site.people()[0])
     assert code is not None
     assert code in guest.page.text
     tables = export.tables(site.db, site.study)
@@ -107,7 +98,7 @@ def test_what_was_typed_about_oneself_survives_leaving_the_page(guest: Any) -> N
 def test_an_answer_is_stored_when_given_and_shown_after_a_reload(site: Any, guest: Any) -> None:
     guest.walk_to_trial()
     guest.send(kind="answer", key="k1", position=1, question="rating_left", value="4")
-    assert answers_at(site.db, the_participant(site), 1) == {"rating_left": 4}
+    assert answers_at(site.db, site.people()[0], 1) == {"rating_left": 4}
     assert 'name="rating_left" value="4" checked' in guest.get("/trial/1").text
 
 
@@ -115,7 +106,7 @@ def test_the_same_entry_twice_counts_once(site: Any, guest: Any) -> None:
     guest.walk_to_trial()
     assert guest.watch("same").json() == {"ok": True, "new": True}
     assert guest.watch("same").json() == {"ok": True, "new": False}
-    found = trials.at(site.db, the_participant(site), 1)
+    found = trials.at(site.db, site.people()[0], 1)
     assert found is not None
     assert found.views == 1
 
@@ -127,7 +118,7 @@ def test_a_form_sent_twice_finishes_one_trial(site: Any, guest: Any) -> None:
     first = guest.client.post("/trial/1", data=form)
     second = guest.client.post("/trial/1", data=form)
     assert first.url.path == second.url.path == "/trial/2"
-    assert [t.is_complete for t in trials.all_trials(site.db, the_participant(site))] == [
+    assert [t.is_complete for t in trials.all_trials(site.db, site.people()[0])] == [
         True,
         False,
         False,
@@ -183,7 +174,7 @@ def test_entries_and_forms_without_their_token_are_refused(site: Any, guest: Any
     forged = guest.client.post("/trial/1", data={"csrf": "0" * 64, "rating_left": "1"})
     assert forged.status_code == 403
     assert "Please send that again" in forged.text
-    assert answers_at(site.db, the_participant(site), 1) == {}
+    assert answers_at(site.db, site.people()[0], 1) == {}
 
 
 def test_an_entry_without_a_cookie_is_not_taken_for_stored(guest: Any) -> None:
@@ -230,7 +221,7 @@ def test_stopping_keeps_the_answers_and_lets_the_browser_go(site: Any, guest: An
     guest.finish(rating_left="3")
     guest.get("/stop")
     assert "The answers you gave are kept." in guest.post("/stop", choice="keep").text
-    assert answers_at(site.db, the_participant(site), 1)["rating_left"] == 3
+    assert answers_at(site.db, site.people()[0], 1)["rating_left"] == 3
     guest.get("/continue")
     assert guest.at == "/"
 
@@ -252,9 +243,7 @@ def test_orders_differ_between_people(site: Any) -> None:
         one = site.guest()
         one.walk_to_trial()
         one.client.close()
-    for name in export.tables(site.db, site.study).participants["participant"]:
-        person = participants.by_public_id(site.db, site.study, name)
-        assert person is not None
+    for person in site.people():
         assert progress.current_step(site.db, person).name == "practice"
         orders.add(tuple(trial.clip for trial in trials.all_trials(site.db, person)))
     assert orders == {("practice", "1", "2"), ("practice", "2", "1")}

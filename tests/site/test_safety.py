@@ -173,3 +173,7 @@ def test_questions_about_left_and_right_stand_side_by_side(definition: Any) -> N
 )
 def test_browsers_are_known_by_family_only(user_agent: str, family: str) -> None:
     assert browser_family(user_agent) == family
+
+
+def test_the_site_gives_a_sign_of_life(guest: Any) -> None:
+    assert guest.get("/healthz").json() == {"ok": True, "study": "small"}

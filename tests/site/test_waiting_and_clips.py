@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from study.data import events, export, jobs, participants
+from study.data import events, jobs, trials
 from study.data.quality import quality
 from study.site.media import ClipShelf
 
@@ -47,7 +47,7 @@ def test_a_clip_that_fails_is_told_without_jargon(site: Any, guest: Any) -> None
         job = jobs.claim(site.db, worker="w")
         assert job is not None
         jobs.fail(site.db, job, worker="w", error="GL went away")
-    assert guest.client.get(STATE).json()["wait"].startswith("Something holds the clips up.")
+    assert guest.client.get(STATE).json()["wait"].endswith("Code: CLIPS-STUCK")
 
 
 def test_a_screen_too_small_for_every_size_is_told(guest: Any) -> None:
@@ -110,8 +110,21 @@ def test_a_missing_clip_stops_visibly_and_the_dashboard_knows(site: Any, guest: 
     assert "This clip is not ready" in page.text
     assert "Please wait a minute and try again." in page.text
     assert "CLIP-MISSING P-" in page.text
-    [problem] = quality(site.db, site.study).problems
+    [problem] = quality(site.db, site.study).real.problems
     assert (problem.code, problem.position) == ("CLIP-MISSING", 1)
+    person = site.people()[0]
+    clip = trials.all_trials(site.db, person)[0].clip_id
+    job = jobs.by_clip(site.db, clip)
+    assert job is not None
+    assert job.state == jobs.QUEUED
+
+
+def test_clips_that_were_lost_are_made_again(site: Any, guest: Any) -> None:
+    guest.walk_to_preparing()
+    for path in site.settings.media_folder.glob("*.mp4"):
+        path.unlink()
+    assert guest.client.get(STATE).json()["is_ready"] is False
+    assert jobs.summary(site.db).queued == 3
 
 
 def test_a_file_of_another_length_is_no_clip(site: Any) -> None:
@@ -127,8 +140,6 @@ def test_a_play_that_was_interrupted_is_kept_and_does_not_unlock(site: Any, gues
     guest.walk_to_trial()
     guest.watch(is_complete=False, was_hidden=True)
     assert guest.finish(rating_left="2").status_code == 422
-    name = export.tables(site.db, site.study).participants["participant"][0]
-    person = participants.by_public_id(site.db, site.study, name)
-    assert person is not None
+    [person] = site.people()
     plays = [e for e in events.history(site.db, person) if e.kind == "played"]
     assert [play.payload["was_hidden"] for play in plays] == [True]
