@@ -23,16 +23,16 @@ def caruncle() -> tuple[Floats, Indices, Floats, Floats]:
     """Return points (n, 3) in mm, quads (m, 4), and how much each point is caruncle or sclera."""
     points, a, b = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM)
     x, y, z = (points[..., axis] for axis in range(3))
-    hump = np.exp(-(((a - 0.30) / 0.22) ** 2) - ((b - 0.42) / 0.30) ** 2)
+    hump = np.exp(-(((a - 0.33) / 0.25) ** 2) - ((b - 0.44) / 0.32) ** 2)
     plica = np.exp(-(((a - 0.66 - 0.10 * (b - 0.5)) / 0.07) ** 2)) * np.sin(np.pi * b)
     lobes = 0.12 * np.sin(9.0 * x + 3.0 * y) * np.sin(7.0 * y - 2.0 * x) * hump
     sag = 0.9 * np.sin(np.pi * b) * np.clip(a * 4, 0, 1)
-    height = z - sag + 1.7 * hump + 0.45 * plica + lobes
+    height = z - sag + 1.9 * hump + 0.45 * plica + lobes
     globe = globe_height(np.minimum(np.hypot(x, y), 10.9))
     near, under = _ease((a - 0.40) / 0.42), _ease((a - 0.8) / 0.2)
     points[..., 2] = height * (1 - near) + (globe + 0.12 + 0.5 * plica - 0.6 * under) * near
     pink = np.clip(1.25 * hump, 0, 1).ravel()
-    return points.reshape(-1, 3), _quads(), pink, _ease((a - 0.30) / 0.32).ravel()
+    return points.reshape(-1, 3), _quads(), pink, 0.85 * _ease((a - 0.48) / 0.45).ravel()
 
 
 def outer_membrane() -> tuple[Floats, Indices, Floats]:

@@ -7,11 +7,12 @@ paint are put on by ``skin`` and ``skin_light``.
 from __future__ import annotations
 
 import functools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import imageio.v3 as iio
 import numpy as np
+from scipy.spatial import cKDTree
 
 from renderer import lid_fit
 from renderer.camera import eye_centre_mm
@@ -22,6 +23,7 @@ from renderer.subdivide import subdivide
 
 FINE_BOX_MM: Final = ((-86.0, -52.0, -62.0), (86.0, 50.0, 60.0))  # what close views can show
 LOWEST_MM: Final = -215.0  # below it the collar hides the neck
+SEAM_LID: Final = 0.08  # share of lid below which a patch takes on the face's light
 SEAM_SINK_MM: Final = 0.12  # the patches' last rings dive under the face
 SOCKET_MM: Final = 18.2  # around MakeHuman's globe: everything nearer is socket or inner lid
 
@@ -61,6 +63,33 @@ class FaceMesh:
     sockets: tuple[lid_fit.Socket, lid_fit.Socket]
 
 
+@dataclass(frozen=True)
+class Seam:
+    """How a patch takes on its neighbour's values at its outer edge, so that no seam shows.
+
+    ``weight`` (n,) of the neighbour; ``near`` (n, 4) its vertices and ``shares`` (n, 4) of them.
+    """
+
+    weight: Floats
+    near: Indices
+    shares: Floats
+
+    def blend(self, own: Floats, neighbours: Floats) -> Floats:
+        """Return (n, ...) values of the patch that run into the neighbour's (m, ...)."""
+        flat = neighbours.reshape(len(neighbours), -1)
+        beside = (flat[self.near] * self.shares[..., None]).sum(axis=1).reshape(own.shape)
+        weight = self.weight.reshape((-1,) + (1,) * (own.ndim - 1))
+        return np.asarray(own + weight * (beside - own))
+
+
+def seam(patch: SkinPart, face: SkinPart) -> Seam:
+    """Return the seam between a patch and the face around it."""
+    distance, near = cKDTree(face.points_mm).query(patch.points_mm, k=4)
+    shares = 1 / (distance + 0.1) ** 2
+    weight = np.clip(1 - patch.lid / SEAM_LID, 0, 1)
+    return Seam(weight, near, shares / shares.sum(axis=1, keepdims=True))
+
+
 @functools.cache
 def face_mesh() -> FaceMesh:
     """Build the skin of the main character."""
@@ -75,11 +104,17 @@ def face_mesh() -> FaceMesh:
     quads1 = quads1[~_in_eye(level1, quads1)]
     quads2 = quads2[~_in_eye(level2, quads2)]
     near1, near2 = _in_box(level1, quads1, inset_mm=6.0), _in_box(level2, quads2)
+    fine = _part(level2, quads2[near2], normals=normals2)
+    patches = [_patch(lids[eye], eye) for eye in (0, 1)]
+    patches = [
+        replace(patch, normals=_unit(seam(patch, fine).blend(patch.normals, fine.normals)))
+        for patch in patches
+    ]
     return FaceMesh(
-        fine=_part(level2, quads2[near2], normals=normals2),
+        fine=fine,
         rest=_part(level1, quads1[~near1], normals=normals1),
         coarse=_part(level1, quads1, normals=normals1),
-        patches=(_patch(lids[0], 0), _patch(lids[1], 1)),
+        patches=(patches[0], patches[1]),
         corners=(_corners(0), _corners(1)),
         lids=lids,
         sockets=sockets,
@@ -112,7 +147,12 @@ def vertex_normals(points: Floats, triangles: Indices) -> Floats:
         ],
         axis=1,
     )
-    return np.asarray(total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-12))
+    return _unit(total)
+
+
+def _unit(vectors: Floats) -> Floats:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.asarray(vectors / np.maximum(lengths, 1e-12))
 
 
 def _head_cage(body: Figure) -> tuple[Floats, Indices]:

@@ -32,7 +32,8 @@ from renderer.strand_buffers import StrandMesh
 
 CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
 SAMPLE_ALPHA_TO_COVERAGE: Final = 0x809E
-HAIR_BIAS_MM: Final = 1.2
+FACE_HAIR_BIAS_MM: Final = 1.2  # hairs nearer than this to a surface are not in its shadow
+SCALP_HAIR_BIAS_MM: Final = 5.0
 HAIR_SEED: Final = 20
 KNIT_PX_PER_MM: Final = 60.0  # of the knit's tile; more than it has: wool looks soft, not sharp
 
@@ -103,11 +104,11 @@ class Head:
             u_camera_mm=camera_mm,
             u_pixel_per_mm=pixel_per_mm,
             u_pixel_mm=float(np.linalg.norm(np.asarray(camera_mm))) / pixel_per_mm,
-            u_shadow_bias_mm=HAIR_BIAS_MM,
             **light.uniforms(),
         )
         clip = projection @ view_matrix
-        for mesh in self._hair:
+        for mesh, bias_mm in self._hair:
+            program.set(u_shadow_bias_mm=bias_mm)
             mesh.draw(program, clip)
         self.gl.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
 
@@ -133,15 +134,18 @@ class Head:
             self._lit_by = light
 
 
-def _grow_hair(gl: moderngl.Context) -> list[StrandMesh]:
-    """Grow lashes, brows and hair; both sides obey the same laws, hair by hair they differ."""
+def _grow_hair(gl: moderngl.Context) -> list[tuple[StrandMesh, float]]:
+    """Grow lashes, brows and hair, each with its shadow bias in mm.
+
+    Both sides obey the same laws; hair by hair they differ.
+    """
     face = face_mesh()
     meshes = []
     for eye in (0, 1):
         rng = np.random.Generator(np.random.PCG64(HAIR_SEED + eye))
         for strands in (grow_lashes(face.lids[eye], rng), grow_brow(face.sockets[eye], rng)):
             placed = replace(strands, points_mm=to_world(strands.points_mm, eye))
-            meshes.append(StrandMesh(gl, placed, rng))
+            meshes.append((StrandMesh(gl, placed, rng), FACE_HAIR_BIAS_MM))
     rng = np.random.Generator(np.random.PCG64(HAIR_SEED + 2))
-    meshes.append(StrandMesh(gl, grow_hair(hair_cap(face), rng), rng))
+    meshes.append((StrandMesh(gl, grow_hair(hair_cap(face), rng), rng), SCALP_HAIR_BIAS_MM))
     return meshes

@@ -13,9 +13,10 @@ import moderngl
 import numpy as np
 
 from renderer.cache import cached_arrays
+from renderer.face_mesh import face_mesh, seam
 from renderer.head_surfaces import Surface
 from renderer.light import Light
-from renderer.skin_light import light_skin
+from renderer.skin_light import SkinLight, light_skin
 from renderer.sky_visibility import Draw, Region, Visible, look_up, sky_visibility
 
 SUN_LIFT_MM: Final = 0.35  # off the surface, twice: along its normal and towards the sun
@@ -56,9 +57,10 @@ def light_surfaces(
     depth = np.frombuffer(light.shadow_map.read(), dtype=np.float32).reshape(size, size)
     matrix = np.asarray(light.world_to_shadow, dtype=float)
     without_sun = replace(light.sky, sun_irradiance=np.zeros(3))
+    lights: dict[str, SkinLight] = {}
     for name, item in surfaces.items():
         lifted = item.points_mm + SUN_LIFT_MM * (item.normals + light.sky.sun_direction)
-        lit = light_skin(
+        lights[name] = light_skin(
             item.points_mm,
             item.normals,
             item.triangles,
@@ -67,5 +69,16 @@ def light_surfaces(
             open_sky=free[name],
             sun=look_up(depth, matrix, lifted, radius_px=2).astype(float),
         )
-        shine = 0.3 if name == "cap" else 1.0
-        item.write_light(lit.diffuse, shine * lit.ambient, (name != "cap") * lit.sun)
+    for eye in (0, 1):
+        join = seam(face_mesh().patches[eye], face_mesh().fine)
+        own, beside = lights[f"patch{eye}"], lights["fine"]
+        lights[f"patch{eye}"] = SkinLight(
+            join.blend(own.diffuse, beside.diffuse),
+            join.blend(own.ambient, beside.ambient),
+            join.blend(own.sun, beside.sun),
+        )
+    # The ribbons shine, not the mass of the hair beneath.
+    cap = lights["cap"]
+    lights["cap"] = SkinLight(cap.diffuse, 0.3 * cap.ambient, 0.0 * cap.sun)
+    for name, item in surfaces.items():
+        item.write_light(lights[name].diffuse, lights[name].ambient, lights[name].sun)

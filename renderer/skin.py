@@ -23,7 +23,7 @@ BASE: Final = (0.60, 0.375, 0.275)
 LIPS: Final = (0.50, 0.235, 0.205)
 MARGIN: Final = (0.62, 0.340, 0.290)
 WET: Final = (0.60, 0.265, 0.235)
-SCLERA: Final = (0.72, 0.60, 0.54)  # seen through the conjunctiva in the corners
+SCLERA: Final = (0.68, 0.53, 0.47)  # seen through the conjunctiva in the corners
 CARUNCLE: Final = (0.64, 0.235, 0.200)
 # Tints: centre x, y in mm, radii in mm, factor of the albedo. Both sides alike unless x is 0.
 ZONES: Final = (
@@ -122,7 +122,7 @@ def _relief(rng: np.random.Generator) -> Floats:
     """Return heights in mm: polygons between fine furrows, pores, and soft waviness."""
     fine = _furrows(rng, cells=52)
     coarse = _furrows(rng, cells=30)
-    height = -0.010 * np.exp(-fine / 0.06) - 0.010 * np.exp(-coarse / 0.09)
+    height = -0.008 * np.exp(-fine / 0.06) - 0.007 * np.exp(-coarse / 0.09)
     height += 0.006 * _blur_noise(rng, 0.08) + 0.012 * _blur_noise(rng, 0.5)
     return np.asarray(height - 0.030 * _pores(rng, count=560))
 
