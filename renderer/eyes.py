@@ -107,7 +107,8 @@ class Eyes:
             return
         target, wireframe = self._gl.fbo, self._gl.wireframe
         self._set(eye, {"u_view_matrix": view_matrix, "u_projection": projection}, camera_mm)
-        silhouette.begin(self._gl, target.viewport)
+        placed = np.asarray(view_matrix) @ self._models[eye].values["u_eye_to_world"]
+        silhouette.begin(self._gl, target.viewport, eye_to_clip=np.asarray(projection) @ placed)
         self._gl.wireframe = False
         self._gl.enable_only(moderngl.CULL_FACE)
         self._models[eye].mesh.render()
@@ -175,7 +176,7 @@ class Eyes:
                 open_rims=rims_texture(self._gl, open_lids()),
                 mean_albedo=np.asarray(values["u_iris_mean"]),
             )
-        silhouette = Silhouette(self._gl, detail_mesh(detail)) if is_fine else None
+        silhouette = Silhouette(self._gl, detail_mesh(detail), rims=rims) if is_fine else None
         return EyeModel(program, mesh, values, silhouette)
 
 

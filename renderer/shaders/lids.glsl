@@ -14,7 +14,7 @@ vec4 rims_at(float x_mm) {
 // Whether a point of the globe, or its neighbourhood, can lie open to view. Lids may be modelled a
 // little wider than their rims say.
 bool between_lids(vec3 p_eye) {
-    const float margin_mm = 2.5;
+    const float margin_mm = 1.0;
     vec4 rims = rims_at(p_eye.x);
     return p_eye.z > -2.0 && p_eye.y < rims.x + margin_mm && p_eye.y > rims.y - margin_mm;
 }

@@ -15,6 +15,7 @@ from renderer.anatomy import CORNEA_IOR
 from renderer.camera import eye_centre_mm, look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.eye_silhouette import opening_box, opening_points
 from renderer.eyes import APPARENT_GAIN, Eyes, gaze_rotation
 from renderer.iris import IrisMaps
 from renderer.lids import LidRims, anatomical_rims
@@ -298,3 +299,12 @@ def test_meshes_are_seen_when_facets_are_flat(bench: Bench) -> None:
         return len(np.unique(np.round(pixels[radius > 7.2, 0], 4)))
 
     assert shades("off") < 0.5 * shades("low")
+
+
+def test_the_opening_box_holds_the_lids_and_the_cornea() -> None:
+    orthographic = np.diag([1 / 20, 1 / 10, 1 / 20, 1.0])  # 40 x 20 mm on 400 x 200 px
+    x, y, width, height = opening_box(opening_points(anatomical_rims(0)), orthographic, (400, 200))
+    rims = anatomical_rims(0)
+    assert x <= 200 + 10 * rims.upper_mm[0, 0] <= x + width
+    assert y + height == pytest.approx(100 + 10 * (rims.upper_mm[:, 1].max() + 1.5), abs=3)
+    assert y == pytest.approx(100 + 10 * (rims.lower_mm[:, 1].min() - 1.5), abs=3)
