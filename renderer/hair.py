@@ -19,10 +19,10 @@ from renderer.makehuman import Floats, Indices
 COLOUR: Final = (0.060, 0.033, 0.019)
 KNOT_MM: Final = (0.0, 18.0, -205.0)  # where the comb gathers the hair
 THICKNESS_MM: Final = 9.0
-STRANDS: Final = 8000
-WISPS: Final = 2200
-POINTS: Final = 7
-RIBBON_MM: Final = 0.75  # a ribbon stands for some ten hairs
+STRANDS: Final = 2600
+WISPS: Final = 1200
+POINTS: Final = 6
+RIBBON_MM: Final = 1.9  # a ribbon stands for a lock of hairs; its shader draws strands on it
 # The hairline as height in mm over the azimuth around the head (0 front, 180 back), face to nape.
 HAIRLINE: Final = np.array(
     [
@@ -113,7 +113,7 @@ def grow_hair(cap: HairCap, rng: np.random.Generator) -> Strands:
     width = np.concatenate(
         [
             RIBBON_MM * rng.uniform(0.6, 1.3, len(mass)),
-            rng.uniform(0.10, 0.40, len(wisps)),
+            rng.uniform(0.15, 0.6, len(wisps)),
         ]
     )
     points = np.concatenate([mass, wisps])
@@ -167,7 +167,7 @@ def _comb_over(
     count = len(roots)
     length = length_mm * rng.uniform(0.6, 1.25, count)
     high = rng.uniform(0, 1, count)
-    lift = 0.1 + 1.1 * high
+    lift = 0.7 + 1.0 * high
     sway = rng.normal(0, 0.10, count)
     place, points = roots.copy(), []
     for number in range(POINTS):

@@ -20,7 +20,7 @@ from renderer.clothing import knit_tile
 from renderer.face_mesh import face_mesh, to_world
 from renderer.hair import grow_hair, hair_cap
 from renderer.head_buffers import CellMesh, TilePyramid
-from renderer.head_light import light_surfaces, open_sky
+from renderer.head_light import light_strands, light_surfaces, open_sky
 from renderer.head_surfaces import cap_surface, cloth_surface, skin_surfaces
 from renderer.lashes import grow_brow, grow_lashes
 from renderer.lid_fit import lid_rims
@@ -107,8 +107,7 @@ class Head:
             **light.uniforms(),
         )
         clip = projection @ view_matrix
-        for mesh, bias_mm in self._hair:
-            program.set(u_shadow_bias_mm=bias_mm)
+        for mesh, _ in self._hair:
             mesh.draw(program, clip)
         self.gl.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
 
@@ -131,6 +130,7 @@ class Head:
         """Bake the light into the vertex buffers unless it is the last one."""
         if self._lit_by is not light:
             light_surfaces(self._surfaces, light, self._open_sky)
+            light_strands(self._hair, light)
             self._lit_by = light
 
 

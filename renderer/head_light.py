@@ -5,7 +5,7 @@ How free each direction is depends on the head alone and is kept in the cache.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Final
 
@@ -16,8 +16,10 @@ from renderer.cache import cached_arrays
 from renderer.face_mesh import face_mesh, seam
 from renderer.head_surfaces import Surface
 from renderer.light import Light
+from renderer.makehuman import Floats
 from renderer.skin_light import SkinLight, light_skin
 from renderer.sky_visibility import Draw, Region, Visible, look_up, sky_visibility
+from renderer.strand_buffers import StrandMesh
 
 SUN_LIFT_MM: Final = 0.35  # off the surface, twice: along its normal and towards the sun
 HEAD_REGION: Final = ((0.0, -30.0, -50.0), 190.0)
@@ -53,9 +55,7 @@ def light_surfaces(
     surfaces: Mapping[str, Surface], light: Light, free: Mapping[str, Visible]
 ) -> None:
     """Bake a light into every surface's vertex buffers."""
-    size = light.shadow_map.size[0]
-    depth = np.frombuffer(light.shadow_map.read(), dtype=np.float32).reshape(size, size)
-    matrix = np.asarray(light.world_to_shadow, dtype=float)
+    depth, matrix = _shadow(light)
     without_sun = replace(light.sky, sun_irradiance=np.zeros(3))
     lights: dict[str, SkinLight] = {}
     for name, item in surfaces.items():
@@ -82,3 +82,18 @@ def light_surfaces(
     lights["cap"] = SkinLight(cap.diffuse, 0.3 * cap.ambient, 0.0 * cap.sun)
     for name, item in surfaces.items():
         item.write_light(lights[name].diffuse, lights[name].ambient, lights[name].sun)
+
+
+def light_strands(strands: Iterable[tuple[StrandMesh, float]], light: Light) -> None:
+    """Bake the sun into hairs; each mesh comes with its shadow bias in mm."""
+    depth, matrix = _shadow(light)
+    for mesh, bias_mm in strands:
+        lifted = mesh.points_mm + bias_mm * light.sky.sun_direction
+        mesh.write_sun(look_up(depth, matrix, lifted, radius_px=1))
+
+
+def _shadow(light: Light) -> tuple[Visible, Floats]:
+    """Return the light's depth map (size, size) and its world-to-clip matrix."""
+    size = light.shadow_map.size[0]
+    depth = np.frombuffer(light.shadow_map.read(), dtype=np.float32).reshape(size, size)
+    return depth, np.asarray(light.world_to_shadow, dtype=float)

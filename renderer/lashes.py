@@ -15,9 +15,9 @@ from renderer.makehuman import Floats
 
 UPPER_COUNT: Final = 165  # adults: about 150 upper, 75 lower lashes in two or three rows
 LOWER_COUNT: Final = 80
-BROW_COUNT: Final = 760
-LASH_POINTS: Final = 8
-BROW_POINTS: Final = 6
+BROW_COUNT: Final = 680
+LASH_POINTS: Final = 7
+BROW_POINTS: Final = 5
 LASH_COLOUR: Final = (0.018, 0.011, 0.008)
 BROW_COLOUR: Final = (0.030, 0.018, 0.011)
 # The brow's middle line from nose to temple: x, y, half width in mm, direction of growth in degrees

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 
 from renderer.camera import Matrix
-from renderer.head_buffers import frustum_distance
+from renderer.head_buffers import sort_into_cells
 from renderer.lashes import Strands
 from renderer.makehuman import Floats, Indices
 from renderer.program import Program
@@ -20,24 +21,30 @@ class StrandMesh:
     def __init__(self, gl: moderngl.Context, strands: Strands, rng: np.random.Generator) -> None:
         """``rng`` gives each strand the number by which distant views thin the hair out."""
         rows, triangles = ribbons(strands, rng)
+        triangles, self._cells = sort_into_cells(rows[:, :3], triangles)
         self._gl = gl
         self._vertices = gl.buffer(rows.astype(np.float32).tobytes())
         self._index = gl.buffer(triangles.astype(np.int32).tobytes())
         self._array: moderngl.VertexArray | None = None
         points = strands.points_mm.reshape(-1, 3)
-        self.centre_mm: Floats = (points.min(axis=0) + points.max(axis=0)) / 2
-        self.radius_mm = float(np.linalg.norm(points - self.centre_mm, axis=1).max())
+        self.points_mm: Floats = points
+        self._sun = gl.buffer(reserve=len(points) * 2 * 4)
+
+    def write_sun(self, visible: npt.ArrayLike) -> None:
+        """Replace the share of the sun (n,) at each of ``points_mm``."""
+        both_sides = np.repeat(np.asarray(visible, dtype=np.float32), 2)
+        self._sun.write(both_sides.tobytes())
 
     def draw(self, program: Program, clip: Matrix) -> None:
-        """Draw all ribbons unless none can be seen; a mesh belongs to one program."""
-        away = frustum_distance(np.asarray(clip, dtype=float), self.centre_mm[None])
-        if (away < -self.radius_mm).any():
-            return
+        """Draw the ribbons that a world-to-clip matrix can show; a mesh belongs to one program."""
         if self._array is None:
             self._array = self._gl.vertex_array(
-                program.gl_program, [(self._vertices, LAYOUT[0], *LAYOUT[1])], self._index
+                program.gl_program,
+                [(self._vertices, LAYOUT[0], *LAYOUT[1]), (self._sun, "1f", "in_sun")],
+                self._index,
             )
-        self._array.render()
+        for first, count in self._cells.visible(np.asarray(clip, dtype=float)):
+            self._array.render(vertices=count, first=first)
 
 
 def ribbons(strands: Strands, rng: np.random.Generator) -> tuple[Floats, Indices]:
