@@ -44,13 +44,13 @@ def outer_membrane() -> tuple[Floats, Indices, Floats]:
     globe = globe_height(np.minimum(np.hypot(points[..., 0], points[..., 1]), 11.2))
     near, under = _ease(a / 0.6), _ease((a - 0.6) / 0.4)
     sheet = points[..., 2] - 0.4 * np.sin(np.pi * b)
-    points[..., 2] = sheet * (1 - near) + (globe + 0.15 - 0.6 * under) * near
-    return points.reshape(-1, 3), _quads()[:, ::-1], _ease((a - 0.2) / 0.6).ravel()
+    points[..., 2] = sheet * (1 - near) + (globe + 0.03 - 0.5 * under) * near
+    return points.reshape(-1, 3), _quads()[:, ::-1], 0.6 * _ease((a - 0.2) / 0.6).ravel()
 
 
 def _sheet(corner_x: float, inner_x: float) -> tuple[Floats, Floats, Floats]:
     """Span a sheet between the rims from a canthus inwards; a runs inwards, b upwards, 0 to 1."""
-    a, b = np.meshgrid(np.linspace(0, 1, ROWS), np.linspace(-0.06, 1.06, COLUMNS), indexing="ij")
+    a, b = np.meshgrid(np.linspace(0, 1, ROWS), np.linspace(-0.03, 1.04, COLUMNS), indexing="ij")
     # The inner edge is a crescent around the pupil.
     crescent = inner_x + np.sign(corner_x) * 1.2 * (2 * np.clip(b, 0, 1) - 1) ** 2
     x = corner_x + (crescent - corner_x) * a

@@ -18,7 +18,7 @@ LOWER_COUNT: Final = 80
 BROW_COUNT: Final = 680
 LASH_POINTS: Final = 7
 BROW_POINTS: Final = 5
-LASH_COLOUR: Final = (0.018, 0.011, 0.008)
+LASH_COLOUR: Final = (0.028, 0.017, 0.012)
 BROW_COLOUR: Final = (0.030, 0.018, 0.011)
 # The brow's middle line from nose to temple: x, y, half width in mm, direction of growth in degrees
 # above the way to the temple.

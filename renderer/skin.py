@@ -69,7 +69,7 @@ def _stubble(albedo: Floats, part: SkinPart) -> None:
         middle, half = (np.interp(x, BROW[:, 0], BROW[:, column]) for column in (1, 2))
         inside = np.exp(-(((y - middle) / (half + 0.6)) ** 4)) * (np.abs(x - 4.0) < 22.0)
         front = part.points_mm[:, 2] > -20.0
-        albedo += (0.5 * inside * front)[:, None] * (np.array(BROW_COLOUR) - albedo)
+        albedo += (0.62 * inside * front)[:, None] * (np.array(BROW_COLOUR) - albedo)
 
 
 def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:

@@ -19,7 +19,7 @@ from renderer.sky_visibility import DIRECTIONS, Visible, directions
 
 # How far light of each colour wanders in skin, standard deviation in mm, and the share of it that
 # does (after the diffusion profiles of d'Eon and Luebke 2007, GPU Gems 3, ch. 14).
-SCATTER_MM: Final = (1.5, 0.75, 0.5)
+SCATTER_MM: Final = (1.2, 0.65, 0.45)
 SCATTERED: Final = (0.95, 0.85, 0.8)
 BOUNCE_ALBEDO: Final = (0.30, 0.20, 0.155)  # what the covered directions send: skin and sweater
 
