@@ -45,9 +45,10 @@ export class Player {
     return this.stage.dataset.state;
   }
 
-  /** Take a clip's object URL; the Play button appears once its first frame can be decoded. */
-  async open(url) {
+  /** Take a clip's address; the Play button appears once its first frame can be decoded. */
+  async open(url, source) {
     this.state = "loading";
+    this.source = source;
     await new Promise((resolve, reject) => {
       this.video.addEventListener("loadeddata", resolve, { once: true });
       this.video.addEventListener("error", () => reject(this.video.error), { once: true });
@@ -176,6 +177,7 @@ export class Player {
     return {
       is_complete: isComplete,
       was_hidden: document.hidden,
+      source: this.source,
       started_at: play.started_at,
       duration_ms: play.shownAt === null ? null : Math.round(performance.now() - play.shownAt),
       expected_frames: this.options.frames,

@@ -42,10 +42,19 @@ export function startTrial(main, { outbox, clips, start }) {
     const meter = stage.querySelector("[data-when='loading'] progress");
     clips.onProgress = () => (meter.value = clips.bytesOf([clip]) / clip.bytes);
     try {
-      await player.open(await clips.loadFirst(clip));
+      await openEitherWay(await clips.loadFirst(clip));
       loadTheRest();
     } catch (error) {
       broken(error?.message?.split(" ")[0] || "DECODE");
+    }
+  }
+
+  /** Some browsers play a file of the server's and not the same bytes from memory (iPads had that). */
+  async function openEitherWay(blob) {
+    try {
+      await player.open(blob, "memory");
+    } catch {
+      await player.open(url, "server");
     }
   }
 

@@ -17,6 +17,7 @@ from study.data.refusals import RefusedError, WithdrawnError
 from study.data.studies import Study
 from study.settings import Settings
 from study.site import (
+    about,
     beginning,
     clips,
     dashboard,
@@ -39,6 +40,7 @@ from study.site.problems import problem_page
 log = logging.getLogger("ocularist.site")
 FOR_SCRIPTS = ("/events", "/preparing/state")
 ROOMS = (
+    about,
     beginning,
     preparing,
     trial,

@@ -1,53 +1,35 @@
-"""From the first page to the instructions: who takes part, on what terms, and what they do."""
+"""The first page and the consent: what this is, who takes part, on what terms."""
 
 from __future__ import annotations
 
 import math
-import secrets
-from typing import Any, Final
+from typing import Final
 
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import events, participants, progress
+from study.data import participants, progress
 from study.data.studies import Study
 from study.design.definition import StudyDefinition
-from study.design.questions import AnswerError
 from study.site.access import (
     PARTICIPANT_COOKIE,
     REMEMBER_S,
-    AVisitor,
     ForgedError,
     MaybeVisitor,
-    Visitor,
-    VisitorsForm,
     redirect,
     remember,
-    step_of,
     to_current,
 )
 from study.site.browsers import browser_family
-from study.site.forms import answers_in, first, question_rows, read_form
+from study.site.forms import first, read_form
+from study.site.frame import shared
 from study.site.place import Here
 from study.site.signatures import SIMULATION_HEADER, is_simulation_token
 
 router = APIRouter(default_response_class=HTMLResponse)
 
-DRAFTED: Final = "drafted"
 QUESTIONNAIRE_S: Final = 45  # for one clip's questions, by our own trials
 AROUND_S: Final = 150  # for everything before and after the clips
-
-
-def shared(study: Study, visitor: Visitor | None, page: str) -> dict[str, Any]:
-    """Return what every page of a participant shows."""
-    return {
-        "page": page,
-        "visitor": visitor,
-        "study_title": study.title,
-        "language": study.definition.language,
-        "contact": study.definition.contact,
-        "resume_url": visitor.resume_url if visitor else "",
-    }
 
 
 def minutes_of(definition: StudyDefinition) -> int:
@@ -148,66 +130,3 @@ def declined(here: Here) -> Response:
         lines=["You are not taking part, and nothing about you was stored."],
         offer="start",
     )
-
-
-@router.get("/about-you")
-def about(here: Here, visitor: AVisitor) -> Response:
-    """Ask about the participant."""
-    step_of(here, visitor, "about")
-    return _about_page(here, visitor, _drafts(here, visitor), {})
-
-
-def _drafts(here: Here, visitor: Visitor) -> dict[str, object]:
-    """Return what was typed into this page before, in case it was left in the middle."""
-    drafted: dict[str, object] = {}
-    for event in events.history(here.db, visitor.participant):
-        if event.kind == DRAFTED:
-            drafted[str(event.payload["question"])] = event.payload["value"]
-    return drafted
-
-
-def _about_page(
-    here: Here, visitor: Visitor, answers: dict[str, object], faults: dict[str, str]
-) -> Response:
-    definition = visitor.study.definition
-    return here.page(
-        "participant/about.html",
-        status=422 if faults else 200,
-        **shared(visitor.study, visitor, "about"),
-        about=definition.about_page,
-        rows=question_rows(definition.about),
-        answers=answers,
-        faults=faults,
-        key=secrets.token_hex(16),
-    )
-
-
-@router.post("/about-you")
-def store_about(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
-    """Store the answers about the participant."""
-    answers = answers_in(fields, visitor.study.definition.about)
-    try:
-        progress.store_about(
-            here.db, visitor.participant, answers, key=first(fields, "key") or "about"
-        )
-    except AnswerError as error:
-        return _about_page(here, visitor, answers, error.faults)
-    return to_current(here, visitor)
-
-
-@router.get("/instructions")
-def instructions(here: Here, visitor: AVisitor) -> Response:
-    """Say what to do."""
-    step_of(here, visitor, "instructions")
-    return here.page(
-        "participant/instructions.html",
-        **shared(visitor.study, visitor, "instructions"),
-        instructions=visitor.study.definition.instructions,
-    )
-
-
-@router.post("/instructions")
-def read_instructions(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:  # noqa: ARG001 - the form carries only its proof
-    """Note that the instructions were read."""
-    progress.finish_instructions(here.db, visitor.participant, key="instructions")
-    return to_current(here, visitor)

@@ -21,8 +21,8 @@ from study.site.access import (
     step_of,
     to_current,
 )
-from study.site.beginning import shared
 from study.site.forms import first, read_form
+from study.site.frame import shared
 from study.site.place import Here
 
 router = APIRouter(default_response_class=HTMLResponse)

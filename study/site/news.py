@@ -13,8 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from study.data import answers, events, views
 from study.design.questions import AnswerError, read_answers
+from study.site.about import DRAFTED
 from study.site.access import AVisitor, Visitor, check_csrf
-from study.site.beginning import DRAFTED
 from study.site.place import Here
 
 router = APIRouter()

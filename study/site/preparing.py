@@ -13,8 +13,8 @@ from study.data.arms import Screen
 from study.data.participants import Participant
 from study.design.parts import Size
 from study.site.access import AVisitor, Visitor, VisitorsForm, redirect, step_of, to_current
-from study.site.beginning import shared
 from study.site.forms import first
+from study.site.frame import shared
 from study.site.media import to_preload
 from study.site.place import Here
 

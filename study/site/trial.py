@@ -13,8 +13,8 @@ from study.data.progress import Step
 from study.data.refusals import NotReachedError, NotWatchedError
 from study.design.questions import AnswerError
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
-from study.site.beginning import shared
 from study.site.forms import answers_in, first, question_rows
+from study.site.frame import shared
 from study.site.media import clip_url
 from study.site.place import Here
 from study.site.problems import problem_page

@@ -305,3 +305,12 @@ def test_ending_waits_for_the_last_answers(site: Any, page: Page) -> None:
     found = trials.at(site.db, site.people()[0], 1)
     assert found is not None
     assert found.answers["rating_left"] == 5
+
+
+def test_a_clip_that_no_browser_can_read_is_told(site: Any, page: Page) -> None:
+    for path in site.settings.media_folder.glob("*.mp4"):
+        path.write_bytes(b"\0" * path.stat().st_size)
+    walk_to_trial(page, site.url)
+    state(page, "broken")
+    expect(page.get_by_text("Your answers so far are safe.")).to_be_visible()
+    expect(page.locator(".card[data-when=broken] .code")).to_contain_text("DEMUXER")

@@ -1,0 +1,82 @@
+"""What a participant tells about themselves, and what they are told to do."""
+
+from __future__ import annotations
+
+import secrets
+from typing import Final
+
+from fastapi import APIRouter
+from fastapi.responses import HTMLResponse, Response
+
+from study.data import events, progress
+from study.design.questions import AnswerError
+from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
+from study.site.forms import answers_in, first, question_rows
+from study.site.frame import shared
+from study.site.place import Here
+
+router = APIRouter(default_response_class=HTMLResponse)
+DRAFTED: Final = "drafted"
+
+
+@router.get("/about-you")
+def about(here: Here, visitor: AVisitor) -> Response:
+    """Ask about the participant."""
+    step_of(here, visitor, "about")
+    return _about_page(here, visitor, _drafts(here, visitor), {})
+
+
+def _drafts(here: Here, visitor: Visitor) -> dict[str, object]:
+    """Return what was typed into this page before, in case it was left in the middle."""
+    drafted: dict[str, object] = {}
+    for event in events.history(here.db, visitor.participant):
+        if event.kind == DRAFTED:
+            drafted[str(event.payload["question"])] = event.payload["value"]
+    return drafted
+
+
+def _about_page(
+    here: Here, visitor: Visitor, answers: dict[str, object], faults: dict[str, str]
+) -> Response:
+    definition = visitor.study.definition
+    return here.page(
+        "participant/about.html",
+        status=422 if faults else 200,
+        **shared(visitor.study, visitor, "about"),
+        about=definition.about_page,
+        rows=question_rows(definition.about),
+        answers=answers,
+        faults=faults,
+        key=secrets.token_hex(16),
+    )
+
+
+@router.post("/about-you")
+def store_about(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
+    """Store the answers about the participant."""
+    answers = answers_in(fields, visitor.study.definition.about)
+    try:
+        progress.store_about(
+            here.db, visitor.participant, answers, key=first(fields, "key") or "about"
+        )
+    except AnswerError as error:
+        return _about_page(here, visitor, answers, error.faults)
+    return to_current(here, visitor)
+
+
+@router.get("/instructions")
+def instructions(here: Here, visitor: AVisitor) -> Response:
+    """Say what to do."""
+    step_of(here, visitor, "instructions")
+    return here.page(
+        "participant/instructions.html",
+        **shared(visitor.study, visitor, "instructions"),
+        instructions=visitor.study.definition.instructions,
+    )
+
+
+@router.post("/instructions")
+def read_instructions(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:  # noqa: ARG001 - the form carries only its proof
+    """Note that the instructions were read."""
+    progress.finish_instructions(here.db, visitor.participant, key="instructions")
+    return to_current(here, visitor)
