@@ -85,7 +85,7 @@ def hair_cap(face: FaceMesh) -> HairCap:
 
 def _is_ear(points: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
-    return np.asarray((x > 72.0) & (y < 5.0) & (y > -60.0) & (z > -125.0) & (z < -60.0))
+    return np.asarray((x > 72.0) & (y < 5.0) & (y > -60.0) & (z > -101.0) & (z < -60.0))
 
 
 def _ease(x: Floats) -> Floats:

@@ -34,6 +34,7 @@ CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
 SAMPLE_ALPHA_TO_COVERAGE: Final = 0x809E
 FACE_HAIR_BIAS_MM: Final = 1.2  # hairs nearer than this to a surface are not in its shadow
 SCALP_HAIR_BIAS_MM: Final = 5.0
+HEAD_MIDDLE_MM: Final = (0.0, 10.0, -85.0)
 HAIR_SEED: Final = 20
 KNIT_PX_PER_MM: Final = 60.0  # of the knit's tile; more than it has: wool looks soft, not sharp
 
@@ -108,7 +109,7 @@ class Head:
         )
         clip = projection @ view_matrix
         for mesh, _ in self._hair:
-            mesh.draw(program, clip)
+            mesh.draw(program, clip, camera_mm=np.asarray(camera_mm, dtype=float))
         self.gl.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
 
     def draw_depth(self, matrix: npt.ArrayLike) -> None:
@@ -147,5 +148,6 @@ def _grow_hair(gl: moderngl.Context) -> list[tuple[StrandMesh, float]]:
             placed = replace(strands, points_mm=to_world(strands.points_mm, eye))
             meshes.append((StrandMesh(gl, placed, rng), FACE_HAIR_BIAS_MM))
     rng = np.random.Generator(np.random.PCG64(HAIR_SEED + 2))
-    meshes.append((StrandMesh(gl, grow_hair(hair_cap(face), rng), rng), SCALP_HAIR_BIAS_MM))
+    scalp_hair = StrandMesh(gl, grow_hair(hair_cap(face), rng), rng, around_mm=HEAD_MIDDLE_MM)
+    meshes.append((scalp_hair, SCALP_HAIR_BIAS_MM))
     return meshes

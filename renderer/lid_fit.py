@@ -55,7 +55,7 @@ def rim_curves(*, samples: int = 129) -> tuple[Curve, Curve]:
     the lower lid touches the limbus with its trough towards the temple.
     """
     s = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, samples))  # dense at the canthi
-    return tuple(_rim(s, upper=upper) for upper in (True, False))  # type: ignore[return-value]  # two
+    return _rim(s, upper=True), _rim(s, upper=False)
 
 
 def lid_rims(eye: int) -> LidRims:

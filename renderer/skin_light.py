@@ -15,7 +15,7 @@ from scipy.sparse.linalg import cg
 
 from renderer.light import Sky
 from renderer.makehuman import Floats, Indices
-from renderer.sky_visibility import DIRECTIONS, Visible, directions
+from renderer.sky_visibility import Visible, directions
 
 # How far light of each colour wanders in skin, standard deviation in mm, and the share of it that
 # does (after the diffusion profiles of d'Eon and Luebke 2007, GPU Gems 3, ch. 14).
@@ -115,6 +115,3 @@ def _heat_matrices(points: Floats, triangles: Indices) -> tuple[sparse.csr_array
     )
     lumped = np.bincount(triangles.ravel(), np.repeat(areas / 6, 3), minlength=count)
     return sparse.csr_array(sparse.diags_array(np.maximum(lumped, 1e-6))), stiffness
-
-
-__all__ = ["DIRECTIONS", "SkinLight", "light_skin", "scatter", "sky_radiance"]

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Final
+
 import moderngl
 import numpy as np
 import numpy.typing as npt
@@ -12,16 +15,33 @@ from renderer.lashes import Strands
 from renderer.makehuman import Floats, Indices
 from renderer.program import Program
 
+SILHOUETTE: Final = 0.3  # sine of how far beyond the horizon of its body hair may still be seen
 LAYOUT = ("3f 3f 4f 3f", ["in_position", "in_tangent", "in_ribbon", "in_colour"])
 
 
 class StrandMesh:
     """Ribbons of one kind of hair: lashes, brows or scalp hair."""
 
-    def __init__(self, gl: moderngl.Context, strands: Strands, rng: np.random.Generator) -> None:
-        """``rng`` gives each strand the number by which distant views thin the hair out."""
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        strands: Strands,
+        rng: np.random.Generator,
+        *,
+        around_mm: tuple[float, float, float] | None = None,
+    ) -> None:
+        """``rng`` gives each strand the number by which distant views thin the hair out.
+
+        ``around_mm``: the middle of an opaque body that hides hair on its far side, if any.
+        """
         rows, triangles = ribbons(strands, rng)
         triangles, self._cells = sort_into_cells(rows[:, :3], triangles)
+        self._hides = around_mm is not None
+        if around_mm is not None:
+            outward = self._cells.centre_mm - np.asarray(around_mm)
+            outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+            spread = np.full(len(outward), SILHOUETTE)
+            self._cells = replace(self._cells, facing=outward, spread=spread)
         self._gl = gl
         self._vertices = gl.buffer(rows.astype(np.float32).tobytes())
         self._index = gl.buffer(triangles.astype(np.int32).tobytes())
@@ -35,15 +55,16 @@ class StrandMesh:
         both_sides = np.repeat(np.asarray(visible, dtype=np.float32), 2)
         self._sun.write(both_sides.tobytes())
 
-    def draw(self, program: Program, clip: Matrix) -> None:
-        """Draw the ribbons that a world-to-clip matrix can show; a mesh belongs to one program."""
+    def draw(self, program: Program, clip: Matrix, *, camera_mm: Floats) -> None:
+        """Draw the ribbons that a view can show; a mesh belongs to one program."""
         if self._array is None:
             self._array = self._gl.vertex_array(
                 program.gl_program,
                 [(self._vertices, LAYOUT[0], *LAYOUT[1]), (self._sun, "1f", "in_sun")],
                 self._index,
             )
-        for first, count in self._cells.visible(np.asarray(clip, dtype=float)):
+        camera = camera_mm if self._hides else None
+        for first, count in self._cells.visible(np.asarray(clip, dtype=float), camera):
             self._array.render(vertices=count, first=first)
 
 
