@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,14 @@ INTEROCULAR_MM: Final = 62.0
 IRIS_PX: Final = {"macroscopic": 350.0, "near": 160.0, "medium": 40.0, "far": 12.0}
 
 
+class CameraUniforms(TypedDict):
+    """What every draw call of a view is given."""
+
+    view_matrix: Matrix
+    projection: Matrix
+    camera_mm: npt.NDArray[np.float64]
+
+
 @dataclass(frozen=True)
 class View:
     """One rectangle of the picture with its camera.
@@ -38,6 +46,15 @@ class View:
     projection: Matrix
     position_mm: npt.NDArray[np.float64]
     eyes: tuple[int, ...]
+
+    @property
+    def uniforms(self) -> CameraUniforms:
+        """The view as keyword arguments of a draw call."""
+        return {
+            "view_matrix": self.view_matrix,
+            "projection": self.projection,
+            "camera_mm": self.position_mm,
+        }
 
 
 def eye_centre_mm(eye: int) -> npt.NDArray[np.float64]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import moderngl
 
-from renderer.camera import View, views
+from renderer.camera import CameraUniforms, View, camera_radius_mm, views
 from renderer.clip import ClipSpec
 from renderer.crowd_cube import CrowdCube
 from renderer.eyes import Eyes
@@ -43,6 +43,7 @@ class FrameRenderer:
         if scene is None or scene.key != scene_key(spec):
             scene = build_scene(gl, spec)
         self.scene = scene
+        scene.surroundings.prepare_background(camera_radius_mm(spec.distance))
         self._crowd_cube = self._make_crowd_cube()
         self._eyes = Eyes(
             gl,
@@ -81,11 +82,7 @@ class FrameRenderer:
         return CrowdCube(self.gl, max(sizes), self.scene.crowd) if sizes else None
 
     def _draw_view(self, view: View, time_s: float) -> dict[int, int]:
-        camera = {
-            "view_matrix": view.view_matrix,
-            "projection": view.projection,
-            "camera_mm": view.position_mm,
-        }
+        camera = view.uniforms
         scene = self.scene
         scene.head.draw(**camera, light=scene.light)
         visible = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
@@ -94,7 +91,7 @@ class FrameRenderer:
         scene.head.draw_hair(**camera, light=scene.light)
         return visible
 
-    def _draw_eye(self, eye: int, camera: dict[str, object]) -> int:
+    def _draw_eye(self, eye: int, camera: CameraUniforms) -> int:
         self._eyes.shade(eye, **camera)  # outside the query: it counts what is seen
         query = self.gl.query(samples=True)
         self.gl.wireframe = self.wireframe

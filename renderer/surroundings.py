@@ -84,11 +84,15 @@ class Surroundings:
             self._cubes[size] = self._draw_cube(size)
         return self._cubes[size]
 
+    def prepare_background(self, distance_mm: float) -> None:
+        """Draw the panorama for a camera distance now, before any frame: a frame draws no other."""
+        self._panorama(_defocus(distance_mm))
+
     def draw_background(
         self, *, view_matrix: npt.NDArray[np.floating], projection: npt.NDArray[np.floating]
     ) -> None:
         """Fill what nothing else covered, at the far plane; draw it after all opaque things."""
-        panorama = self._panorama(_defocus(view_matrix))
+        panorama = self._panorama(_defocus(_distance_mm(view_matrix)))
         self._background.set(
             u_view_matrix=view_matrix, u_projection=projection, u_panorama=panorama
         )
@@ -184,10 +188,13 @@ def _sh_basis(d: Vector) -> Vector:
     )
 
 
-def _defocus(view_matrix: npt.NDArray[np.floating]) -> Defocus:
+def _distance_mm(view_matrix: npt.NDArray[np.floating]) -> float:
     matrix = np.asarray(view_matrix, dtype=float)
-    distance = float(np.linalg.norm(matrix[:3, :3].T @ matrix[:3, 3]))
-    return next(step for step in DEFOCUS if distance <= step.farthest_mm)
+    return float(np.linalg.norm(matrix[:3, :3].T @ matrix[:3, 3]))
+
+
+def _defocus(distance_mm: float) -> Defocus:
+    return next(step for step in DEFOCUS if distance_mm <= step.farthest_mm)
 
 
 def _environment_maps(gl: moderngl.Context) -> dict[str, moderngl.Texture]:
