@@ -9,6 +9,7 @@ from typing import Final
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.exceptions import HTTPException
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -35,11 +36,13 @@ HEADERS: Final = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
     "Cache-Control": "no-store",
 }
+# The longest questionnaire stays far below; more would only fill the memory.
+MAX_BODY_BYTES: Final = 1024 * 1024
 SAFE_METHODS: Final = {"GET", "HEAD", "OPTIONS"}
 
 
 class SecureHeaders:
-    """Add HEADERS to every answer that does not say otherwise; refuse foreign posts with 403."""
+    """Add HEADERS to every answer that lacks them; refuse foreign posts and endless bodies."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -60,7 +63,22 @@ class SecureHeaders:
             refusal = PlainTextResponse("This request came from another site.", status_code=403)
             await refusal(scope, receive, send_with_headers)
             return
-        await self.app(scope, receive, send_with_headers)
+        await self.app(scope, limited(receive), send_with_headers)
+
+
+def limited(receive: Receive) -> Receive:
+    """Let at most MAX_BODY_BYTES of a body through; more is answered with 413."""
+    received = 0
+
+    async def receive_some() -> Message:
+        nonlocal received
+        message = await receive()
+        received += len(message.get("body", b""))
+        if received > MAX_BODY_BYTES:
+            raise HTTPException(413)
+        return message
+
+    return receive_some
 
 
 def is_foreign(headers: Headers) -> bool:

@@ -177,3 +177,13 @@ def test_browsers_are_known_by_family_only(user_agent: str, family: str) -> None
 
 def test_the_site_gives_a_sign_of_life(guest: Any) -> None:
     assert guest.get("/healthz").json() == {"ok": True, "study": "small"}
+
+
+def test_a_body_without_end_is_refused(guest: Any) -> None:
+    guest.walk_to_trial()
+    much = "x" * 2_000_000
+    headers = {"X-CSRF-Token": guest.data("csrf"), "Content-Type": "application/json"}
+    assert guest.client.post("/events", content=much, headers=headers).status_code == 413
+    # A single field has a lower limit of its own.
+    assert guest.post("/trial/1", key="k", comments=much).status_code == 400
+    assert guest.get("/trial/1").status_code == 200
