@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from renderer.lid_fit import LATERAL_MM, MEDIAL_MM, globe_height, rim_curves
+from renderer.lid_rims import LATERAL_MM, MEDIAL_MM, globe_height, rim_curves
 from renderer.makehuman import Floats, Indices
 
 CARUNCLE_END_MM: Final = -9.2  # towards the pupil: under the globe's surface from here on

@@ -23,7 +23,7 @@ from renderer.head_buffers import CellMesh, TilePyramid
 from renderer.head_light import light_strands, light_surfaces, open_sky
 from renderer.head_surfaces import cap_surface, cloth_surface, skin_surfaces
 from renderer.lashes import grow_brow, grow_lashes
-from renderer.lid_fit import lid_rims
+from renderer.lid_rims import lid_rims
 from renderer.lids import LidRims
 from renderer.light import Light
 from renderer.program import build_program

@@ -1,4 +1,4 @@
-"""Eyelids fitted to our globe: the rims, and a fine skin patch from the rims to the face.
+"""Eyelids fitted to our globe: a fine skin patch from the rims to the face around them.
 
 Pure numpy. MakeHuman's lids enclose a globe of 15 mm radius; here they are replaced by lids that
 are modelled anatomically, ring by ring around the fissure, and melt into the face's surface.
@@ -14,16 +14,9 @@ from typing import Final
 import numpy as np
 from scipy.interpolate import RBFInterpolator
 
-from renderer.anatomy import GLOBE_RADIUS_MM
-from renderer.lids import Curve, LidRims
+from renderer.lid_rims import LATERAL_MM, MEDIAL_MM, rim_curves, smooth_step
 from renderer.makehuman import Floats, Indices
-from renderer.optics import surface_height
 
-LATERAL_MM: Final = (12.6, 0.55)  # canthi, frontal plane: where the rims meet at the temple
-MEDIAL_MM: Final = (-16.6, -2.1)  # ... and beside the nose
-LATERAL_Z_MM: Final = 4.6
-MEDIAL_Z_MM: Final = 7.0
-CLEARANCE_MM: Final = 0.06  # tear film between rim and globe
 TUCK_MM: Final = 11.0  # radius of the patch's innermost ring
 MARGIN_MM: Final = 1.9  # lid thickness at the rim
 OUTLINE_MM: Final = (24.5, 22.5, 17.5, 17.0)  # patch ends: temple, nose, up, down of (0, 0)
@@ -46,81 +39,6 @@ class LidPatch:
     is_upper: Floats
     across_mm: Floats
     rim_row: int
-
-
-def rim_curves(*, samples: int = 129) -> tuple[Curve, Curve]:
-    """Return the inner edges of upper and lower lid in patch space, canthus at the nose first.
-
-    Opening about 9.1 mm: the upper lid covers 1.9 mm of the cornea with its peak towards the nose,
-    the lower lid touches the limbus with its trough towards the temple.
-    """
-    s = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, samples))  # dense at the canthi
-    return _rim(s, upper=True), _rim(s, upper=False)
-
-
-def lid_rims(eye: int) -> LidRims:
-    """Return the rims of the viewer's left (0) or right (1) eye in eye space, ascending x."""
-    upper, lower = rim_curves()
-    if eye == 0:
-        upper, lower = (curve[::-1] * [-1.0, 1.0, 1.0] for curve in (upper, lower))
-    return LidRims(upper_mm=upper, lower_mm=lower)
-
-
-def _rim(s: Floats, *, upper: bool) -> Curve:
-    """Return the rim at shares 0 to 1 of the way from the nose to the temple."""
-    (x1, y1), (x0, y0) = LATERAL_MM, MEDIAL_MM
-    # Cubic Bezier arcs, joined at the extremum; handles set the fullness towards each canthus.
-    if upper:
-        peak, first, second = (-1.2, 3.75), (0.36, 0.62), (0.50, 0.62)
-    else:
-        peak, first, second = (2.2, -5.35), (0.50, 0.58), (0.46, 0.60)
-    sign = 1.0 if upper else -1.0
-    share = (peak[0] - x0) / (x1 - x0)
-    t = np.where(s < share, s / share, (s - share) / (1 - share))
-    nose = _bezier(
-        t,
-        (x0, y0),
-        (x0 + first[0] * (peak[0] - x0), y0 + sign * first[1] * abs(peak[1] - y0)),
-        (peak[0] - second[0] * (peak[0] - x0), peak[1]),
-        peak,
-    )
-    temple = _bezier(
-        t,
-        peak,
-        (peak[0] + 0.50 * (x1 - peak[0]), peak[1]),
-        (x1 - 0.26 * (x1 - peak[0]), y1 + sign * 0.50 * abs(peak[1] - y1)),
-        (x1, y1),
-    )
-    xy = np.where((s < share)[:, None], nose, temple)
-    return np.column_stack([xy, _rim_depth(xy)])
-
-
-def _bezier(t: Floats, *points: tuple[float, float]) -> Floats:
-    a, b, c, d = (np.array(point) for point in points)
-    t = t[:, None]
-    return np.asarray(
-        (1 - t) ** 3 * a + 3 * t * (1 - t) ** 2 * b + 3 * t**2 * (1 - t) * c + t**3 * d
-    )
-
-
-def _rim_depth(xy: Floats) -> Floats:
-    """Slide on the globe, cornea included, and leave it smoothly towards the canthi."""
-    r = np.linalg.norm(xy, axis=1)
-    on_globe = globe_height(np.minimum(r, 10.8)) + CLEARANCE_MM
-    medial = _smooth((-xy[:, 0] - 7.5) / 8.5)
-    lateral = _smooth((xy[:, 0] - 8.0) / 4.6)
-    depth = on_globe * (1 - medial) + MEDIAL_Z_MM * medial
-    return depth * (1 - lateral) + LATERAL_Z_MM * lateral
-
-
-def globe_height(r_mm: Floats) -> Floats:
-    """Return the height in mm of sclera or cornea at a distance from the gaze axis."""
-    return np.asarray(surface_height(np.minimum(r_mm, GLOBE_RADIUS_MM - 1e-6))[0])
-
-
-def _smooth(x: Floats) -> Floats:
-    x = np.clip(x, 0.0, 1.0)
-    return np.asarray(x * x * x * (x * (6 * x - 15) + 10))
 
 
 class Socket:
@@ -239,7 +157,7 @@ def _canthus_nearness(xy: Floats) -> Floats:
         np.linalg.norm(xy - np.array(LATERAL_MM), axis=1) / 4.5,
         np.linalg.norm(xy - np.array(MEDIAL_MM), axis=1) / 5.5,
     )
-    return 1.0 - _smooth(nearest)
+    return 1.0 - smooth_step(nearest)
 
 
 def _skin_point(edge: Floats, outward: Floats, distance: Floats, lift: Floats) -> Floats:
@@ -263,7 +181,7 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
     end = np.linalg.norm(_end_points(edge, outward) - edge[:, :2], axis=1)
     x = edge[:, 0]
     one = np.ones(len(edge))
-    platform = (2.7 - 0.8 * _smooth((x - 2.0) / 10.0) - 0.7 * _smooth((-x - 8.0) / 8.0)) * (
+    platform = (2.7 - 0.8 * smooth_step((x - 2.0) / 10.0) - 0.7 * smooth_step((-x - 8.0) / 8.0)) * (
         1 - 0.45 * canthus
     )
     fold = 1.9 * (1 - 0.7 * canthus)
@@ -287,7 +205,7 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
             socket=socket,
             lift=bulge * (1 - canthus),
         )
-        blend = _smooth((share + 0.12) / 0.55 * one)
+        blend = smooth_step((share + 0.12) / 0.55 * one)
         local = after[:, 2] + (face[:, 2] - after[:, 2]) * blend
         face[:, 2] = local
         rows.append(face)
@@ -308,7 +226,7 @@ def _lower_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
         d = distance * squeeze
         skin = _skin_point(edge, outward, d, lift * away)
         face = _face_point(edge, outward, d, socket=socket, lift=lift * away)
-        blend = _smooth((distance * (1 + 2.0 * canthus) - 0.5) / 7.0)[:, None]
+        blend = smooth_step((distance * (1 + 2.0 * canthus) - 0.5) / 7.0)[:, None]
         rows.append(skin * (1 - blend) + face * blend)
     first = 6.9 * squeeze
     for share, lift in ((0.18, 0.35), (0.36, 0.25), (0.54, 0.12), (0.72, 0.02), (0.88, 0.0)):

@@ -6,7 +6,7 @@ import numpy as np
 
 from renderer import lashes
 from renderer.face_mesh import face_mesh
-from renderer.lid_fit import globe_height
+from renderer.lid_rims import globe_height
 from renderer.strand_buffers import ribbons
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer import lid_fit
+from renderer import lid_rims
 from renderer.caruncle import caruncle, outer_membrane
 from renderer.face_mesh import face_mesh, to_patch, to_world
 from renderer.lids import LidRims
@@ -15,26 +15,26 @@ def over_globe(points: np.ndarray) -> np.ndarray:
     """Return how far points lie above the globe's front surface, NaN beside it, in mm."""
     r = np.hypot(points[..., 0], points[..., 1])
     beside = (r > 11.0) | (points[..., 2] < 0)
-    return np.where(beside, np.nan, points[..., 2] - lid_fit.globe_height(r))
+    return np.where(beside, np.nan, points[..., 2] - lid_rims.globe_height(r))
 
 
 @pytest.mark.parametrize("eye", [0, 1])
 def test_rims_are_curves_in_ascending_x_with_the_nose_on_the_right_side(eye: int) -> None:
-    rims = lid_fit.lid_rims(eye)
+    rims = lid_rims.lid_rims(eye)
     for curve in (rims.upper_mm, rims.lower_mm):
         assert (np.diff(curve[:, 0]) > 0).all()
         nose = curve[-1] if eye == 0 else curve[0]
-        assert abs(nose[0]) == pytest.approx(-lid_fit.MEDIAL_MM[0])
+        assert abs(nose[0]) == pytest.approx(-lid_rims.MEDIAL_MM[0])
     assert isinstance(rims, LidRims)
 
 
 def test_both_eyes_have_mirrored_rims() -> None:
-    left, right = lid_fit.lid_rims(0), lid_fit.lid_rims(1)
+    left, right = lid_rims.lid_rims(0), lid_rims.lid_rims(1)
     np.testing.assert_allclose(left.upper_mm[::-1] * [-1, 1, 1], right.upper_mm)
 
 
 def test_the_opening_is_that_of_an_average_eye() -> None:
-    upper, lower = lid_fit.rim_curves()
+    upper, lower = lid_rims.rim_curves()
     x = np.linspace(-8, 8, 33)
     opening = np.interp(x, upper[:, 0], upper[:, 1]) - np.interp(x, lower[:, 0], lower[:, 1])
     assert 8.0 < opening.max() < 10.5
@@ -43,10 +43,10 @@ def test_the_opening_is_that_of_an_average_eye() -> None:
 
 
 def test_rims_touch_the_globe_wherever_they_lie_on_it() -> None:
-    for curve in lid_fit.rim_curves():
+    for curve in lid_rims.rim_curves():
         middle = np.abs(curve[:, 0]) < 7.0
         gap = over_globe(curve[middle])
-        np.testing.assert_allclose(gap, lid_fit.CLEARANCE_MM, atol=1e-6)
+        np.testing.assert_allclose(gap, lid_rims.CLEARANCE_MM, atol=1e-6)
 
 
 @pytest.mark.parametrize("eye", [0, 1])
