@@ -59,7 +59,12 @@ WORDS: Final = {
         link="Try again",
     ),
 }
-OTHERWISE: Final = Words(
+REFUSED: Final = Words(
+    "That did not work",
+    "Your browser sent something that this page does not take. Your answers so far are safe.",
+    "Go back to where you are and try once more.",
+)
+OUR_FAULT: Final = Words(
     "Something went wrong",
     "That was our fault, not yours. Your answers so far are safe.",
     "Please try again in a moment.",
@@ -70,7 +75,7 @@ OTHERWISE: Final = Words(
 def problem_page(request: Request, *, status: int, code: str) -> HTMLResponse:
     """Return the calm page for a code."""
     place: Place = request.app.state.place
-    words = WORDS.get(code.partition(" ")[0], OTHERWISE)
+    words = WORDS.get(code.partition(" ")[0], OUR_FAULT if status >= 500 else REFUSED)
     try:
         definition = place.study().definition
         title, language, contact = definition.title, definition.language, definition.contact
