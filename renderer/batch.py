@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
+import os
 import statistics
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -96,7 +97,7 @@ def render_clip(
         return kept
     folder.mkdir(parents=True, exist_ok=True)
     started = time.perf_counter()
-    part = folder / f".{spec.clip_id}.part.mp4"
+    part = folder / f".{spec.clip_id}.{os.getpid()}.part.mp4"
     notes = _encode(spec, part, source, progress)
     fidelity = _compare(part, notes, size=(spec.width, spec.height))
     file = folder / f"{spec.clip_id}.mp4"
@@ -134,9 +135,20 @@ def render_clip(
 
 
 def remove_parts(folder: Path) -> None:
-    """Remove what an interrupted batch left unfinished."""
+    """Remove what processes that are gone left unfinished; those at work keep theirs."""
     for part in folder.glob(".*.part.mp4"):
-        part.unlink(missing_ok=True)
+        if not _is_alive(int(part.name.split(".")[2])):
+            part.unlink(missing_ok=True)
+
+
+def _is_alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True
 
 
 def _encode(spec: ClipSpec, part: Path, source: FrameSource, progress: Progress) -> _Measurements:

@@ -12,8 +12,8 @@ import moderngl
 
 from renderer.camera import CameraUniforms, View, camera_radius_mm, views
 from renderer.clip import ClipSpec
-from renderer.crowd_cube import CrowdCube
-from renderer.eyes import Eyes
+from renderer.crowd.cube import CrowdCube
+from renderer.eye.eyes import Eyes
 from renderer.picture import SAMPLES, Picture, Pixels
 from renderer.scene import Scene, build_scene, scene_key
 
@@ -85,6 +85,7 @@ class FrameRenderer:
         camera = view.uniforms
         scene = self.scene
         scene.head.draw(**camera, light=scene.light)
+        self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         visible = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
         scene.crowd.draw(**camera, time_s=time_s)
         scene.surroundings.draw_background(view_matrix=view.view_matrix, projection=view.projection)

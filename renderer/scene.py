@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import moderngl
 
 from renderer.clip import ClipSpec
-from renderer.crowd import Crowd
-from renderer.head import Head
+from renderer.crowd.crowd import Crowd
+from renderer.head.head import Head
+from renderer.head.sun_shadow import build_light
 from renderer.light import Light
-from renderer.sun_shadow import build_light
-from renderer.surroundings import Surroundings
+from renderer.park.surroundings import Surroundings
 
 SceneKey = tuple[object, ...]
 

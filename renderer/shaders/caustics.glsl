@@ -1,6 +1,6 @@
 // Provides: the effect "caustics": the light that reaches a point of the iris.
 // Off, low, medium: the sun's plain cosine, the sky's plain irradiance. High, ultra: the light that
-// the cornea lets in and gathers, from maps of this clip (renderer/caustics.py, chamber.py).
+// the cornea lets in and gathers, from maps of this clip (renderer/eye/caustics.py, chamber.py).
 
 uniform sampler2D u_caustic_map;   // light's direction x, y; gain of irradiance
 uniform sampler2D u_chamber_map;   // irradiance of the surroundings inside the chamber

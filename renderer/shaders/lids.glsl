@@ -1,5 +1,5 @@
 // Provides: what the eyelids take from the globe: sunlight, ambient light, reflections.
-// Eye space in millimetres. The rims are the lids' inner edges (renderer/lids.py).
+// Eye space in millimetres. The rims are the lids' inner edges (renderer/eye/lids.py).
 
 uniform sampler2D u_lid_rims;      // per x: y of upper, y of lower, z of upper, z of lower rim
 
@@ -19,7 +19,7 @@ bool between_lids(vec3 p_eye) {
     return p_eye.z > -2.0 && p_eye.y < rims.x + margin_mm && p_eye.y > rims.y - margin_mm;
 }
 
-// 1 where a ray leaves between the lids, 0 where it meets one (renderer/chamber.py, lid_openness).
+// 1 where a ray leaves between the lids, 0 where it meets one (renderer/eye/chamber.py, lid_openness).
 float lid_openness(vec3 p_eye, vec3 d_eye, float softness_mm) {
     float along = dot(p_eye, d_eye);
     float excess = dot(p_eye, p_eye) - LID_FRONT_MM * LID_FRONT_MM;

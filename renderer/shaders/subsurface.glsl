@@ -1,7 +1,7 @@
 // Provides: the effect "subsurface": the iris's reflectance through its layers.
 // Off, low, medium: the map's reflectance (Lambert). High, ultra: single scattering along the bent
 // view ray, lit from the bent light's direction, on a floor of multiple scattering.
-// renderer/subsurface.py is the reference.
+// renderer/eye/subsurface.py is the reference.
 
 uniform sampler2D u_thickness;         // of the four layers, mm
 uniform mat4x3 u_sigma_s;              // per layer, mm^-1

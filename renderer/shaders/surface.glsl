@@ -21,7 +21,7 @@ vec3 world_from_eye(vec3 p_eye) { return (u_eye_to_world * vec4(p_eye, 1.0)).xyz
 vec3 turned_to_world(vec3 d_eye) { return mat3(u_eye_to_world) * d_eye; }
 vec3 turned_to_eye(vec3 d_world) { return transpose(mat3(u_eye_to_world)) * d_world; }
 
-// Height and slope of the front surface; renderer/optics.py, surface_height, says the same.
+// Height and slope of the front surface; renderer/eye/optics.py, surface_height, says the same.
 void front_profile(float r, out float height, out float slope) {
     const float R = CORNEA_RADIUS_MM, p = CORNEA_ASPHERICITY;
     float sag = (R - sqrt(max(R * R - p * r * r, 0.0))) / p;

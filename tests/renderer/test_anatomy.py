@@ -2,7 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from renderer import anatomy, camera
+from renderer import camera
+from renderer.eye import anatomy
 
 
 def test_camera_and_anatomy_agree_on_the_limbus() -> None:

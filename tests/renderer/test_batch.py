@@ -111,7 +111,8 @@ def test_after_kill_9_the_batch_resumes_and_keeps_what_was_done(tmp_path: Path) 
     )
     assert killed.returncode == -signal.SIGKILL
     assert list(read_manifest(tmp_path).clips) == [SPEC.clip_id]
-    assert list(tmp_path.glob(".*.part.mp4"))
+    (tmp_path / f".{SPEC.clip_id}.{_gone_pid()}.part.mp4").write_bytes(b"cut")
+    (tmp_path / f".{SPEC.clip_id}.{os.getpid()}.part.mp4").write_bytes(b"at work")
     source = Pattern()
     specs = [SPEC, replace(SPEC, iris_seed=2), replace(SPEC, iris_seed=3)]
     heard: list[tuple[int, float]] = []
@@ -120,7 +121,15 @@ def test_after_kill_9_the_batch_resumes_and_keeps_what_was_done(tmp_path: Path) 
     )
     assert source.asked == [spec.clip_id for spec in specs[1:]]
     assert [record.clip_id for record in records] == [spec.clip_id for spec in specs]
-    assert not list(tmp_path.glob(".*.part.mp4"))
+    parts = [path.name for path in tmp_path.glob(f".{SPEC.clip_id}.*.part.mp4")]
+    assert parts == [f".{SPEC.clip_id}.{os.getpid()}.part.mp4"]
     assert heard[0] == (0, 1.0)
     assert heard[-1] == (2, 1.0)
     assert len(json.loads((tmp_path / MANIFEST_NAME).read_text())["clips"]) == 3
+
+
+def _gone_pid() -> int:
+    """Return the number of a process that has ended."""
+    process = subprocess.Popen([sys.executable, "-c", ""])
+    process.wait()
+    return process.pid

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from renderer.anatomy import CORNEA_IOR, SUN_ANGULAR_RADIUS_DEG
-from renderer.caustics import MAP_EDGE_MM, caustic_map, entering_rays, lit_flux_mm2
+from renderer.eye.anatomy import CORNEA_IOR, SUN_ANGULAR_RADIUS_DEG
+from renderer.eye.caustics import MAP_EDGE_MM, caustic_map, entering_rays, lit_flux_mm2
 
 IRIS_RADIUS_MM = 5.6  # the disc of the reference's table
 

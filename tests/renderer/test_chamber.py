@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from renderer.anatomy import CORNEA_IOR
-from renderer.chamber import chamber_irradiance, lid_openness, sh_basis
-from renderer.lids import anatomical_rims
+from renderer.eye.anatomy import CORNEA_IOR
+from renderer.eye.chamber import chamber_irradiance, lid_openness, sh_basis
+from renderer.eye.lids import anatomical_rims
 
 CONSTANT = np.zeros((9, 3))
 CONSTANT[0] = 1 / 0.282095  # radiance 1 from everywhere

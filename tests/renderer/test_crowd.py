@@ -2,15 +2,15 @@ import moderngl
 import numpy as np
 import pytest
 
+from renderer.body.rig import skin_vertices
 from renderer.camera import camera_radius_mm, views
 from renderer.clip import DISTANCES, ClipSpec
-from renderer.crowd import Crowd
+from renderer.crowd.crowd import Crowd
+from renderer.crowd.figure import BONES
+from renderer.crowd.people import PEOPLE
+from renderer.crowd.stage import GROUND_MM, STAGE, build_figures, light_shares
 from renderer.detail import Detail
-from renderer.figure import BONES
 from renderer.light import Light, Sky
-from renderer.people import PEOPLE
-from renderer.rig import skin_vertices
-from renderer.stage import GROUND_MM, STAGE, build_figures, light_shares
 
 SPEC = ClipSpec(
     left=Detail.uniform("low"), right=Detail.uniform("low"), distance="far", width=320, height=180

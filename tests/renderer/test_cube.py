@@ -2,7 +2,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.cube import (
+from renderer.park.cube_maps import (
     FACE_AXES,
     FACES,
     CubeTarget,

@@ -1,6 +1,6 @@
 import numpy as np
 
-from renderer.decimate import decimate
+from renderer.body.decimate import decimate
 
 
 def grid(n: int) -> tuple[np.ndarray, np.ndarray]:

@@ -10,18 +10,18 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer import eye_maps
-from renderer.anatomy import CORNEA_IOR
 from renderer.camera import eye_centre_mm, look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.eye_silhouette import opening_box, opening_points
-from renderer.eyes import APPARENT_GAIN, Eyes, gaze_rotation
-from renderer.iris import IrisMaps
-from renderer.lids import LidRims, anatomical_rims
+from renderer.eye import maps as eye_maps
+from renderer.eye.anatomy import CORNEA_IOR
+from renderer.eye.eyes import APPARENT_GAIN, Eyes, gaze_rotation
+from renderer.eye.lids import LidRims, anatomical_rims
+from renderer.eye.sclera import ScleraMaps
+from renderer.eye.silhouette import opening_box, opening_points
+from renderer.eye.subsurface import Tissue
+from renderer.iris.maps import IrisMaps
 from renderer.light import Light, Sky
-from renderer.sclera import ScleraMaps
-from renderer.subsurface import Tissue
 
 ALBEDO = np.array([0.3, 0.2, 0.1], np.float32)
 TISSUE = Tissue(np.full((4, 3), 3.0), np.full((4, 3), 5.0), np.full(4, 0.3))

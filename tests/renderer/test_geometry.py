@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from renderer.anatomy import GLOBE_RADIUS_MM, LIMBUS_RADIUS_MM, PROFILE_END_MM
-from renderer.geometry import BACK_ANGLE_DEG, eye_mesh, ring_polar
-from renderer.optics import surface_height
+from renderer.eye.anatomy import GLOBE_RADIUS_MM, LIMBUS_RADIUS_MM, PROFILE_END_MM
+from renderer.eye.geometry import BACK_ANGLE_DEG, eye_mesh, ring_polar
+from renderer.eye.optics import surface_height
 
 SIZES = (150, 500, 2000, 8000)
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 from renderer.camera import INTEROCULAR_MM, Matrix, look_at, perspective
-from renderer.character import figure
 from renderer.clip import ClipSpec
-from renderer.clothing import sweater
 from renderer.detail import Detail
-from renderer.face_mesh import face_mesh
-from renderer.hair import grow_hair, hair_cap, inside_hairline
-from renderer.head import Head
-from renderer.head_buffers import sort_into_cells
+from renderer.head.buffers import sort_into_cells
+from renderer.head.character import figure
+from renderer.head.clothing import sweater
+from renderer.head.face_mesh import face_mesh
+from renderer.head.hair import grow_hair, hair_cap, inside_hairline
+from renderer.head.head import Head
+from renderer.head.sun_shadow import build_light
 from renderer.light import Light, Sky
-from renderer.sun_shadow import build_light
 
 SIZE = (160, 120)
 Place = tuple[float, float, float]

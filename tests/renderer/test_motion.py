@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
-from renderer.figure import Body
-from renderer.makehuman import base_mesh
-from renderer.motion import (
+from renderer.body.makehuman import base_mesh
+from renderer.body.rig import Rig
+from renderer.crowd.figure import Body
+from renderer.crowd.motion import (
     HIP,
     KNEE,
     WALK_SPEED_MM_S,
@@ -15,9 +16,8 @@ from renderer.motion import (
     walk,
     wave,
 )
-from renderer.people import PEOPLE
-from renderer.rig import Rig
-from renderer.stage import PATH_Z_MM, STAGE, Figure, cached_body
+from renderer.crowd.people import PEOPLE
+from renderer.crowd.stage import PATH_Z_MM, STAGE, Figure, cached_body
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.noise import hash_lattice, noise_1d, noise_grid, polar_noise, sample_polar
+from renderer.textures.noise import hash_lattice, noise_1d, noise_grid, polar_noise, sample_polar
 
 
 def test_the_hash_is_the_same_on_every_machine() -> None:

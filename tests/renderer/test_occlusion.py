@@ -1,6 +1,6 @@
 import numpy as np
 
-from renderer.occlusion import cone_directions, openness, sphere_directions, visibility
+from renderer.crowd.occlusion import cone_directions, openness, sphere_directions, visibility
 
 
 def floor_and_roof() -> tuple[np.ndarray, np.ndarray]:

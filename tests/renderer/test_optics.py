@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from renderer.anatomy import APEX_MM, GLOBE_RADIUS_MM, IRIS_Z_MM, LIMBUS_RADIUS_MM
-from renderer.optics import (
+from renderer.eye.anatomy import APEX_MM, GLOBE_RADIUS_MM, IRIS_Z_MM, LIMBUS_RADIUS_MM
+from renderer.eye.optics import (
     conic_normal,
     cornea_from_inside,
     corneal_sag,

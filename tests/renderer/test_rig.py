@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer import makehuman, rig
+from renderer.body import makehuman, rig
 
 VERTICES = makehuman.base_mesh().vertices_mm
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from renderer import sclera
-from renderer.scleral_vessels import vessel_density
+from renderer.eye import sclera
+from renderer.eye.scleral_vessels import vessel_density
 
 SIZE_PX = 512
 

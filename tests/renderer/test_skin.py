@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer import skin, skin_light
-from renderer.face_mesh import face_mesh, triangles_of
+from renderer.body.subdivide import subdivide
+from renderer.head import skin, skin_light
+from renderer.head.face_mesh import face_mesh, triangles_of
+from renderer.head.sky_visibility import DIRECTIONS, look_up
+from renderer.head.sun_shadow import orthographic
 from renderer.light import Sky
-from renderer.sky_visibility import DIRECTIONS, look_up
-from renderer.subdivide import subdivide
-from renderer.sun_shadow import orthographic
 
 
 def plane(size: int = 41, step_mm: float = 0.5) -> tuple[np.ndarray, np.ndarray]:

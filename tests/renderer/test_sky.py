@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from renderer.sky import LUMINANCE, clear_sky, rgb_from_yxy
+from renderer.park.sky import LUMINANCE, clear_sky, rgb_from_yxy
 
 
 @pytest.mark.parametrize("elevation_deg", [10.0, 40.0, 75.0])

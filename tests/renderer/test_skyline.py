@@ -3,9 +3,9 @@ import hashlib
 import numpy as np
 import pytest
 
-from renderer.panorama import LOWEST_DEG, STEP_DEG, WIDTH, Building, Panorama, paint_building
-from renderer.skyline import park_skyline
-from renderer.tiling import tiling_noise
+from renderer.park.panorama import LOWEST_DEG, STEP_DEG, WIDTH, Building, Panorama, paint_building
+from renderer.park.skyline import park_skyline
+from renderer.textures.tiling import tiling_noise
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from renderer.subsurface import (
+from renderer.eye.subsurface import (
     Path,
     Tissue,
     henyey_greenstein,

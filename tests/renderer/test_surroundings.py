@@ -4,10 +4,10 @@ import pytest
 
 from renderer.camera import views
 from renderer.clip import ClipSpec
-from renderer.cube import face_directions, read_face
 from renderer.detail import Detail
-from renderer.sky import LUMINANCE, clear_sky
-from renderer.surroundings import Surroundings, level_count, project_to_sh
+from renderer.park.cube_maps import face_directions, read_face
+from renderer.park.sky import LUMINANCE, clear_sky
+from renderer.park.surroundings import Surroundings, level_count, project_to_sh
 
 SPEC = ClipSpec(left=Detail.uniform("low"), right=Detail.uniform("low"))
 

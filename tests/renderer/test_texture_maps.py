@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer.pigment import linear_to_srgb, srgb_to_linear
-from renderer.texture_maps import (
+from renderer.iris.pigment import linear_to_srgb, srgb_to_linear
+from renderer.textures.sizes import (
     check_size,
     normals_from_height,
     pack_albedo,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.tubes import Tubes, draw_tubes, join_tubes
+from renderer.textures.tubes import Tubes, draw_tubes, join_tubes
 
 
 def straight(*, y_mm: float, half_width_mm: float, crest: float, tone: float) -> Tubes:

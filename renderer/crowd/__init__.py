@@ -1,0 +1,1 @@
+"""The other five people: bodies, clothes, motion, and how the cornea mirrors them."""

@@ -1,0 +1,98 @@
+"""Eyes and brows of the crowd as small painted meshes of their own, moving with the head.
+
+Pure numpy: vertex colours of a thinned face are too coarse for them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from renderer.body.makehuman import Floats, Indices, base_mesh
+from renderer.crowd.people import Person
+
+GLOSSY: Final = 1.0  # the last channel of ``surface`` on wet eyes
+_SEGMENTS: Final = 14
+_BROW_STEPS: Final = 9
+
+
+@dataclass(frozen=True)
+class FacePart:
+    """A small mesh: positions in mm and normals (n, 3), surface (n, 4), triangles (m, 3)."""
+
+    positions_mm: Floats
+    normals: Floats
+    surface: Floats
+    triangles: Indices
+
+
+def eyes(person: Person, shape: Floats) -> list[FacePart]:
+    """Return two caps: rings of pupil, iris, its darker rim and sclera."""
+    pupil = (0.012, 0.010, 0.010)
+    sclera = (0.62, 0.58, 0.54)
+    rings = (
+        (0.00, pupil), (0.14, pupil), (0.16, person.iris), (0.36, person.iris),
+        (0.41, sclera), (0.75, sclera), (1.25, sclera),
+    )  # fmt: skip
+    angle = np.array([ring for ring, _ in rings])
+    turn = np.arange(_SEGMENTS) / _SEGMENTS * 2 * np.pi
+    cap = np.stack(
+        [
+            np.sin(angle)[:, None] * np.cos(turn),
+            np.sin(angle)[:, None] * np.sin(turn),
+            np.cos(angle)[:, None] * np.ones(_SEGMENTS),
+        ],
+        axis=-1,
+    ).reshape(-1, 3)
+    surface = np.repeat([[*colour, GLOSSY] for _, colour in rings], _SEGMENTS, axis=0)
+    row, column = np.divmod(np.arange((len(rings) - 1) * _SEGMENTS), _SEGMENTS)
+    a, b = row * _SEGMENTS + column, row * _SEGMENTS + (column + 1) % _SEGMENTS
+    triangles = _halve(np.stack([a, a + _SEGMENTS, b + _SEGMENTS, b], axis=1))
+    parts = []
+    for side in "lr":
+        helper = shape[base_mesh().vertices_of(f"helper-{side}-eye")]
+        centre = helper.mean(axis=0)
+        radius = float(np.linalg.norm(helper - centre, axis=1).mean())
+        parts.append(FacePart(cap * radius + centre, cap, surface, triangles))
+    return parts
+
+
+def brows(person: Person, shape: Floats) -> list[FacePart]:
+    """Return two strips on the brow ridge, thick at the nose and tapering outwards."""
+    along = np.linspace(0, 1, _BROW_STEPS)
+    half = 3.6 * np.sqrt(np.clip(1.03 - along, 0, 1)) * np.clip(0.7 + along * 2, 0, 1)
+    middle = 749.0 + 6.0 * np.sin(along * 1.9)
+    row, column = np.divmod(np.arange(2 * (_BROW_STEPS - 1)), _BROW_STEPS - 1)
+    a = row * _BROW_STEPS + column
+    quads = np.stack([a, a + 1, a + 1 + _BROW_STEPS, a + _BROW_STEPS], axis=1)
+    surface = np.tile([*person.hair, 0.0], (3 * _BROW_STEPS, 1))
+    surface[:, :3] = 0.75 * surface[:, :3] + 0.25 * np.array(person.skin)
+    lift = np.array([0.0, 0.25, 0.97])  # outwards on the brow ridge
+    parts = []
+    for side in (-1.0, 1.0):
+        x = side * (15.5 + 38.0 * along)
+        rows = [np.stack([x, middle + sign * half], axis=1) for sign in (-1.0, 0.0, 1.0)]
+        places = _on_face(np.concatenate(rows), shape)
+        places += lift * np.repeat([1.0, 2.4, 1.0], _BROW_STEPS)[:, None]
+        wound = quads if side > 0 else quads[:, ::-1]
+        normals = np.tile(lift, (len(places), 1))
+        parts.append(FacePart(places, normals, surface, _halve(wound)))
+    return parts
+
+
+def _on_face(places: Floats, shape: Floats) -> Floats:
+    """Carry places (n, 2) of the base mesh's forehead over to a person's (n, 3)."""
+    base = base_mesh().vertices_mm
+    near = base_mesh().vertices_of("body")
+    near = near[(base[near, 2] > 80) & (np.abs(base[near, 1] - 750) < 40)]
+    distance = np.linalg.norm(places[:, None] - base[near][None, :, :2], axis=2)
+    nearest = np.argsort(distance, axis=1, kind="stable")[:, :6]
+    weights = 1 / (np.take_along_axis(distance, nearest, axis=1) + 1.0)
+    weights /= weights.sum(axis=1, keepdims=True)
+    return np.asarray(np.einsum("pk,pkc->pc", weights, shape[near[nearest]]))
+
+
+def _halve(quads: Indices) -> Indices:
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])

@@ -1,0 +1,1 @@
+"""The eye: anatomy and optics in numbers, meshes, maps, light inside it, and what draws it."""

@@ -1,0 +1,99 @@
+"""The eye's meshes on the GPU, and the fine mesh as a silhouette over a shaded picture."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from renderer.detail import Detail
+from renderer.eye.anatomy import APEX_MM, GLOBE_RADIUS_MM
+from renderer.eye.geometry import Mesh, eye_mesh
+from renderer.eye.lids import LidRims
+from renderer.program import Program, build_program
+
+Array = npt.NDArray[np.float64]
+Box = tuple[int, int, int, int]
+
+OPENING_MARGIN_MM: Final = 1.5  # lids may be modelled a little wider than their rims say
+HULL_SCALE: Final = 1.08  # a coarse globe of this size encloses every finer one
+
+
+class Silhouette:
+    """The fine mesh of one eye and the picture that it is filled from."""
+
+    def __init__(self, gl: moderngl.Context, mesh: Mesh, *, rims: LidRims) -> None:
+        self.camera: Any = None  # whose picture is in the target
+        self._program = build_program(gl, "eye.vert", fragment="eye_silhouette.frag")
+        self._mesh = vertex_array(gl, self._program, mesh)
+        self._target: moderngl.Framebuffer | None = None
+        self._shaded: moderngl.Texture | None = None
+        self._origin_px = (0, 0)
+        self._opening = opening_points(rims)
+
+    def begin(
+        self, gl: moderngl.Context, viewport: tuple[int, int, int, int], *, eye_to_clip: Array
+    ) -> None:
+        """Make a cleared target of the viewport's size the one that is drawn to.
+
+        Drawing is confined to the lids' opening, which ``eye_to_clip`` (4, 4) projects.
+        """
+        self._origin_px = viewport[:2]
+        if self._target is None or self._target.size != viewport[2:]:
+            self._shaded = gl.texture(viewport[2:], 4, dtype="f2")
+            self._shaded.filter = (moderngl.NEAREST, moderngl.NEAREST)
+            self._target = gl.framebuffer([self._shaded])
+        self._target.use()
+        self._target.scissor = (0, 0, *viewport[2:])
+        self._target.clear()
+        self._target.scissor = opening_box(self._opening, eye_to_clip, viewport[2:])
+
+    def draw(self, values: dict[str, Any]) -> None:
+        """Draw the fine mesh into the current target."""
+        self._program.set(**values, u_shaded=self._shaded, u_view_origin_px=self._origin_px)
+        self._mesh.render()
+
+
+def opening_points(rims: LidRims) -> Array:
+    """Return points (n, 3) in eye space that surround all of the globe that the lids leave open."""
+    margin = np.array([0.0, OPENING_MARGIN_MM, 0.0])
+    turn = np.radians(np.linspace(-100, 100, 21))
+    equator = 1.02 * GLOBE_RADIUS_MM * np.column_stack([np.sin(turn), 0 * turn, np.cos(turn)])
+    apex = np.array([[0.0, 0.0, 1.02 * APEX_MM]])
+    return np.concatenate([rims.upper_mm + margin, rims.lower_mm - margin, equator, apex])
+
+
+def opening_box(points: Array, eye_to_clip: Array, size: tuple[int, int]) -> Box:
+    """Return the scissor box (x, y, width, height) in pixels around points (n, 3), 2 px wider."""
+    clip = np.column_stack([points, np.ones(len(points))]) @ eye_to_clip.T
+    pixels = (clip[:, :2] / clip[:, 3:] * 0.5 + 0.5) * size
+    low = np.clip(np.floor(pixels.min(axis=0)) - 2, 0, size)
+    high = np.clip(np.ceil(pixels.max(axis=0)) + 2, low, size)
+    return int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+
+
+def detail_mesh(detail: Detail) -> Mesh:
+    """Return the mesh that a LoD's tessellation asks for."""
+    return eye_mesh(
+        int(detail.setting("tessellation", "triangles")),
+        facets=detail.setting("tessellation", "normals") == "facet",
+    )
+
+
+def hull_mesh() -> Mesh:
+    """Return a coarse mesh that encloses the globe: it says which pixels to shade."""
+    coarse = eye_mesh(150)
+    return Mesh(HULL_SCALE * coarse.positions, coarse.normals, coarse.triangles)
+
+
+def vertex_array(gl: moderngl.Context, program: Program, mesh: Mesh) -> moderngl.VertexArray:
+    """Upload a mesh for a program that may read positions or normals alone."""
+    corners = np.concatenate([mesh.positions, mesh.normals], axis=1).astype(np.float32)
+    is_read = [name in program.gl_program for name in ("in_position", "in_normal")]
+    layout = " ".join("3f" if read else "12x" for read in is_read)
+    names = [n for n, read in zip(("in_position", "in_normal"), is_read, strict=True) if read]
+    content = (gl.buffer(corners.tobytes()), layout, *names)
+    triangles = gl.buffer(mesh.triangles.astype(np.int32).tobytes())
+    return gl.vertex_array(program.gl_program, [content], triangles)

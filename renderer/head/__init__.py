@@ -1,0 +1,1 @@
+"""The main character: face, lids, lashes, skin, hair, clothes and their light."""

@@ -1,0 +1,153 @@
+"""The main character on the GPU: skin, sweater, lashes, brows and hair, drawn in a scene's light.
+
+World space in mm. The head stands still during a clip: what the sky does to it is baked once per
+light, and a frame only projects and textures it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any, Final
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from renderer.cache import cached_array
+from renderer.camera import Matrix
+from renderer.clip import ClipSpec
+from renderer.eye.lids import LidRims
+from renderer.head.buffers import CellMesh, TilePyramid
+from renderer.head.clothing import knit_tile
+from renderer.head.face_mesh import face_mesh, to_world
+from renderer.head.hair import grow_hair, hair_cap
+from renderer.head.lashes import grow_brow, grow_lashes
+from renderer.head.lid_rims import lid_rims
+from renderer.head.light import light_strands, light_surfaces, open_sky
+from renderer.head.skin import TILE_MM, TILE_PX, pore_tile
+from renderer.head.strands import StrandMesh
+from renderer.head.surfaces import cap_surface, cloth_surface, skin_surfaces
+from renderer.light import Light
+from renderer.program import build_program
+
+CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
+SAMPLE_ALPHA_TO_COVERAGE: Final = 0x809E
+FACE_HAIR_BIAS_MM: Final = 1.2  # hairs nearer than this to a surface are not in its shadow
+SCALP_HAIR_BIAS_MM: Final = 5.0
+HEAD_MIDDLE_MM: Final = (0.0, 10.0, -85.0)
+HAIR_SEED: Final = 20
+KNIT_PX_PER_MM: Final = 60.0  # of the knit's tile; more than it has: wool looks soft, not sharp
+
+
+class Head:
+    """The main character's head and shoulders."""
+
+    def __init__(self, gl: moderngl.Context, spec: ClipSpec) -> None:
+        """Build meshes and textures; ``spec`` decides nothing yet: lids do not follow the gaze."""
+        del spec
+        self.gl = gl
+        self.rims: tuple[LidRims, LidRims] = (lid_rims(0), lid_rims(1))
+        self._programs = {
+            "skin": build_program(gl, "skin.vert", fragment="skin.frag"),
+            "fabric": build_program(gl, "skin.vert", fragment="fabric.frag"),
+            "hair": build_program(gl, "hair.vert", fragment="hair.frag"),
+            "depth": build_program(gl, "depth.vert", fragment="depth.frag"),
+        }
+        self._pores = TilePyramid(gl, cached_array("the skin's pores", pore_tile))
+        self._knit = TilePyramid(gl, knit_tile())
+        skin = skin_surfaces(gl)
+        self._surfaces = skin | {"cloth": cloth_surface(gl), "cap": cap_surface(gl)}
+        self._close = [item.mesh for name, item in skin.items() if name != "coarse"]
+        self._distant = [
+            item.distant or item.mesh for name, item in skin.items() if name not in ("fine", "rest")
+        ]
+        self._open_sky = open_sky(gl, self.draw_depth, self._surfaces)
+        self._hair = _grow_hair(gl)
+        self._lit_by: Light | None = None
+
+    def draw(
+        self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
+    ) -> None:
+        """Draw what is opaque: skin, sweater and the mass of the hair."""
+        self._use_light(light)
+        self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        camera = np.asarray(camera_mm, dtype=float)
+        distance = float(np.linalg.norm(camera))
+        density = self._pixel_per_mm(projection) / distance
+        view = {
+            "u_view_matrix": view_matrix,
+            "u_projection": projection,
+            "u_camera_mm": camera_mm,
+            **light.uniforms(),
+        }
+        clip = projection @ view_matrix
+        skin, fabric = self._programs["skin"], self._programs["fabric"]
+        skin.set(**view, u_pores=self._pores.at(TILE_PX / TILE_MM / density))
+        close = distance < CLOSE_MM
+        for mesh in [*(self._close if close else self._distant), self._mesh("cap")]:
+            mesh.draw(skin, clip, camera_mm=camera)
+        fabric.set(**view, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
+        self.gl.disable(moderngl.CULL_FACE)  # the roll neck shows its inside
+        self._mesh("cloth").draw(fabric, clip)
+
+    def draw_hair(
+        self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
+    ) -> None:
+        """Draw lashes, brows and hair; they cover samples by their alpha."""
+        self._use_light(light)
+        program = self._programs["hair"]
+        self.gl.enable_only(moderngl.DEPTH_TEST)
+        self.gl.enable_direct(SAMPLE_ALPHA_TO_COVERAGE)
+        pixel_per_mm = self._pixel_per_mm(projection)
+        program.set(
+            u_view_matrix=view_matrix,
+            u_projection=projection,
+            u_camera_mm=camera_mm,
+            u_pixel_per_mm=pixel_per_mm,
+            u_pixel_mm=float(np.linalg.norm(np.asarray(camera_mm))) / pixel_per_mm,
+            **light.uniforms(),
+        )
+        clip = projection @ view_matrix
+        for mesh, _ in self._hair:
+            mesh.draw(program, clip, camera_mm=np.asarray(camera_mm, dtype=float))
+        self.gl.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
+
+    def draw_depth(self, matrix: npt.ArrayLike) -> None:
+        """Draw what is opaque into a depth map with a world-to-clip matrix."""
+        program = self._programs["depth"]
+        program.set(u_world_to_clip=matrix)
+        self.gl.disable(moderngl.CULL_FACE)
+        for mesh in [*self._close, self._mesh("cap"), self._mesh("cloth")]:
+            mesh.draw(program, np.asarray(matrix, dtype=float))
+
+    def _mesh(self, name: str) -> CellMesh:
+        return self._surfaces[name].mesh
+
+    def _pixel_per_mm(self, projection: npt.NDArray[Any]) -> float:
+        """Return how many pixels a millimetre spans at 1 mm distance in the current viewport."""
+        return float(projection[1, 1]) * self.gl.fbo.viewport[3] / 2
+
+    def _use_light(self, light: Light) -> None:
+        """Bake the light into the vertex buffers unless it is the last one."""
+        if self._lit_by is not light:
+            light_surfaces(self._surfaces, light, self._open_sky)
+            light_strands(self._hair, light)
+            self._lit_by = light
+
+
+def _grow_hair(gl: moderngl.Context) -> list[tuple[StrandMesh, float]]:
+    """Grow lashes, brows and hair, each with its shadow bias in mm.
+
+    Both sides obey the same laws; hair by hair they differ.
+    """
+    face = face_mesh()
+    meshes = []
+    for eye in (0, 1):
+        rng = np.random.Generator(np.random.PCG64(HAIR_SEED + eye))
+        for strands in (grow_lashes(face.lids[eye], rng), grow_brow(face.sockets[eye], rng)):
+            placed = replace(strands, points_mm=to_world(strands.points_mm, eye))
+            meshes.append((StrandMesh(gl, placed, rng), FACE_HAIR_BIAS_MM))
+    rng = np.random.Generator(np.random.PCG64(HAIR_SEED + 2))
+    scalp_hair = StrandMesh(gl, grow_hair(hair_cap(face), rng), rng, around_mm=HEAD_MIDDLE_MM)
+    meshes.append((scalp_hair, SCALP_HAIR_BIAS_MM))
+    return meshes

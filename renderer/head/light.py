@@ -1,0 +1,100 @@
+"""What a scene's sky does to the head's surfaces, baked once per sky.
+
+How free each direction is depends on the head alone and is kept in the cache.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any, Final
+
+import moderngl
+import numpy as np
+
+from renderer.body.makehuman import Floats
+from renderer.cache import cached_arrays
+from renderer.head.face_mesh import face_mesh, seam
+from renderer.head.skin_light import SkinLight, light_skin
+from renderer.head.sky_visibility import Draw, Region, Visible, look_up, sky_visibility
+from renderer.head.strands import StrandMesh
+from renderer.head.surfaces import Surface
+from renderer.light import Light
+
+SUN_LIFT_MM: Final = 0.35  # off the surface, twice: along its normal and towards the sun
+HEAD_REGION: Final = ((0.0, -30.0, -50.0), 190.0)
+EYE_REGIONS: Final = (((-31.0, 0.0, 8.0), 34.0), ((31.0, 0.0, 8.0), 34.0))
+BODY_REGION: Final = ((0.0, -350.0, -50.0), 520.0)
+
+
+def open_sky(
+    gl: moderngl.Context, draw_depth: Draw, surfaces: Mapping[str, Surface]
+) -> dict[str, Visible]:
+    """Return for each surface by name how free (n, DIRECTIONS) its directions are, 0 to 1."""
+
+    def make() -> dict[str, Any]:
+        meshes = {name: (item.points_mm, item.normals) for name, item in surfaces.items()}
+        plan: list[tuple[tuple[tuple[float, float, float], float], tuple[str, ...]]]
+        plan = [(HEAD_REGION, ("fine", "rest", "coarse", "cap"))]
+        for eye, place in enumerate(EYE_REGIONS):
+            plan.append((place, ("fine", f"patch{eye}", f"corner{eye}")))
+        plan.append((BODY_REGION, ("cloth",)))
+        regions = [
+            Region(centre, half, {name: meshes[name] for name in names})
+            for (centre, half), names in plan
+        ]
+        free = sky_visibility(gl, draw_depth, regions)
+        return {name: np.round(share * 255).astype(np.uint8) for name, share in free.items()}
+
+    kept = cached_arrays("the head's open sky", make)
+    return {
+        name: np.asarray(share, dtype=np.float32) / np.float32(255) for name, share in kept.items()
+    }
+
+
+def light_surfaces(
+    surfaces: Mapping[str, Surface], light: Light, free: Mapping[str, Visible]
+) -> None:
+    """Bake a light into every surface's vertex buffers."""
+    depth, matrix = _shadow(light)
+    without_sun = replace(light.sky, sun_irradiance=np.zeros(3))
+    lights: dict[str, SkinLight] = {}
+    for name, item in surfaces.items():
+        lifted = item.points_mm + SUN_LIFT_MM * (item.normals + light.sky.sun_direction)
+        lights[name] = light_skin(
+            item.points_mm,
+            item.normals,
+            item.triangles,
+            # Wool has no scattered sun to bake: its shader looks the shadow up per pixel.
+            sky=light.sky if item.is_skin else without_sun,
+            open_sky=free[name],
+            sun=look_up(depth, matrix, lifted, radius_px=2).astype(float),
+        )
+    for eye in (0, 1):
+        join = seam(face_mesh().patches[eye], face_mesh().fine)
+        own, beside = lights[f"patch{eye}"], lights["fine"]
+        lights[f"patch{eye}"] = SkinLight(
+            join.blend(own.diffuse, beside.diffuse),
+            join.blend(own.ambient, beside.ambient),
+            join.blend(own.sun, beside.sun),
+        )
+    # The ribbons shine, not the mass of the hair beneath.
+    cap = lights["cap"]
+    lights["cap"] = SkinLight(cap.diffuse, 0.3 * cap.ambient, 0.0 * cap.sun)
+    for name, item in surfaces.items():
+        item.write_light(lights[name].diffuse, lights[name].ambient, lights[name].sun)
+
+
+def light_strands(strands: Iterable[tuple[StrandMesh, float]], light: Light) -> None:
+    """Bake the sun into hairs; each mesh comes with its shadow bias in mm."""
+    depth, matrix = _shadow(light)
+    for mesh, bias_mm in strands:
+        lifted = mesh.points_mm + bias_mm * light.sky.sun_direction
+        mesh.write_sun(look_up(depth, matrix, lifted, radius_px=1))
+
+
+def _shadow(light: Light) -> tuple[Visible, Floats]:
+    """Return the light's depth map (size, size) and its world-to-clip matrix."""
+    size = light.shadow_map.size[0]
+    depth = np.frombuffer(light.shadow_map.read(), dtype=np.float32).reshape(size, size)
+    return depth, np.asarray(light.world_to_shadow, dtype=float)

@@ -1,0 +1,92 @@
+"""Hairs on the GPU: every strand a ribbon that turns its face to the camera."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from renderer.body.makehuman import Floats, Indices
+from renderer.camera import Matrix
+from renderer.head.buffers import sort_into_cells
+from renderer.head.lashes import Strands
+from renderer.program import Program
+
+SILHOUETTE: Final = 0.3  # sine of how far beyond the horizon of its body hair may still be seen
+LAYOUT = ("3f 3f 4f 3f", ["in_position", "in_tangent", "in_ribbon", "in_colour"])
+
+
+class StrandMesh:
+    """Ribbons of one kind of hair: lashes, brows or scalp hair."""
+
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        strands: Strands,
+        rng: np.random.Generator,
+        *,
+        around_mm: tuple[float, float, float] | None = None,
+    ) -> None:
+        """``rng`` gives each strand the number by which distant views thin the hair out.
+
+        ``around_mm``: the middle of an opaque body that hides hair on its far side, if any.
+        """
+        rows, triangles = ribbons(strands, rng)
+        triangles, self._cells = sort_into_cells(rows[:, :3], triangles)
+        self._hides = around_mm is not None
+        if around_mm is not None:
+            outward = self._cells.centre_mm - np.asarray(around_mm)
+            outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+            spread = np.full(len(outward), SILHOUETTE)
+            self._cells = replace(self._cells, facing=outward, spread=spread)
+        self._gl = gl
+        self._vertices = gl.buffer(rows.astype(np.float32).tobytes())
+        self._index = gl.buffer(triangles.astype(np.int32).tobytes())
+        self._array: moderngl.VertexArray | None = None
+        points = strands.points_mm.reshape(-1, 3)
+        self.points_mm: Floats = points
+        self._sun = gl.buffer(reserve=len(points) * 2 * 4)
+
+    def write_sun(self, visible: npt.ArrayLike) -> None:
+        """Replace the share of the sun (n,) at each of ``points_mm``."""
+        both_sides = np.repeat(np.asarray(visible, dtype=np.float32), 2)
+        self._sun.write(both_sides.tobytes())
+
+    def draw(self, program: Program, clip: Matrix, *, camera_mm: Floats) -> None:
+        """Draw the ribbons that a view can show; a mesh belongs to one program."""
+        if self._array is None:
+            self._array = self._gl.vertex_array(
+                program.gl_program,
+                [(self._vertices, LAYOUT[0], *LAYOUT[1]), (self._sun, "1f", "in_sun")],
+                self._index,
+            )
+        camera = camera_mm if self._hides else None
+        for first, count in self._cells.visible(np.asarray(clip, dtype=float), camera):
+            self._array.render(vertices=count, first=first)
+
+
+def ribbons(strands: Strands, rng: np.random.Generator) -> tuple[Floats, Indices]:
+    """Return vertex rows (n, 13) in the order of LAYOUT and triangles (m, 3).
+
+    ``in_ribbon``: side -1 or 1, half width at the root in mm, place along the strand 0 to 1, and
+    the thinning number.
+    """
+    count, points, _ = strands.points_mm.shape
+    tangent = np.gradient(strands.points_mm, axis=1)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=2, keepdims=True), 1e-9)
+    along = np.broadcast_to(np.linspace(0, 1, points), (count, points))
+    half = np.broadcast_to(0.5 * strands.width_mm[:, None], (count, points))
+    number = np.broadcast_to(rng.uniform(0, 1, (count, 1)), (count, points))
+    colour = np.broadcast_to(strands.colour[:, None], (count, points, 3))
+    sides = []
+    for side in (-1.0, 1.0):
+        ribbon = np.stack([np.full((count, points), side), half, along, number], axis=-1)
+        sides.append(np.concatenate([strands.points_mm, tangent, ribbon, colour], axis=-1))
+    rows = np.stack(sides, axis=2).reshape(-1, 13)
+    strand, step = np.meshgrid(np.arange(count), np.arange(points - 1), indexing="ij")
+    first = (strand * points + step).ravel() * 2
+    quads = np.stack([first, first + 1, first + 3, first + 2], axis=1)
+    return rows, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])

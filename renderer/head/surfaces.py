@@ -1,0 +1,111 @@
+"""The head's surfaces ready for the GPU: skin, sweater and the mass of the hair."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import moderngl
+import numpy as np
+
+from renderer.body.makehuman import Floats, Indices
+from renderer.head.buffers import CellMesh
+from renderer.head.character import figure
+from renderer.head.clothing import COLOUR as WOOL_COLOUR
+from renderer.head.clothing import sweater
+from renderer.head.face_mesh import SkinPart, face_mesh
+from renderer.head.hair import COLOUR as HAIR_COLOUR
+from renderer.head.hair import hair_cap
+from renderer.head.lid_fit import ALONG, AROUND, grid_quads
+from renderer.head.skin import SCALP, detail_coordinates, paint
+
+
+@dataclass
+class Surface:
+    """One lit surface: its geometry for bakes, and its mesh, or its fine and its distant mesh."""
+
+    points_mm: Floats
+    normals: Floats
+    triangles: Indices
+    gloss: Floats
+    wet: Floats
+    mesh: CellMesh
+    distant: CellMesh | None = None
+    is_skin: bool = True
+    meshes: list[CellMesh] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.meshes = [self.mesh] if self.distant is None else [self.mesh, self.distant]
+
+    def write_light(self, diffuse: Floats, ambient: Floats, sun: Floats) -> None:
+        """Replace the baked light: diffuse (n, 3), free share of sky and of sun (n,)."""
+        rows = np.column_stack([diffuse, self.gloss, ambient, sun, self.wet])
+        for mesh in self.meshes:
+            mesh.write_light(rows)
+
+
+def skin_surfaces(gl: moderngl.Context) -> dict[str, Surface]:
+    """Return the skin: fine, rest, coarse, and for each eye its patch and its corners."""
+    face = face_mesh()
+    parts = {"fine": face.fine, "rest": face.rest, "coarse": face.coarse}
+    for eye in (0, 1):
+        parts |= {f"patch{eye}": face.patches[eye], f"corner{eye}": face.corners[eye]}
+    surfaces = {}
+    for name, part in parts.items():
+        albedo, gloss = paint(part)
+        rows = _skin_rows(part, albedo)
+        is_patch = name.startswith("patch")
+        surfaces[name] = Surface(
+            part.points_mm,
+            part.normals,
+            part.triangles,
+            gloss,
+            part.wet,
+            CellMesh(gl, rows, part.triangles),
+            CellMesh(gl, rows, _thinned_patch(int(name[-1]))) if is_patch else None,
+        )
+    return surfaces
+
+
+def cloth_surface(gl: moderngl.Context) -> Surface:
+    """Return the sweater."""
+    garment = sweater(figure())
+    count = len(garment.points_mm)
+    rows = [
+        garment.points_mm,
+        garment.normals,
+        np.tile(WOOL_COLOUR, (count, 1)),
+        garment.knit,
+        np.zeros((count, 3)),
+    ]
+    mesh = CellMesh(gl, np.column_stack(rows), garment.triangles)
+    zero = np.zeros(count)
+    return Surface(
+        garment.points_mm, garment.normals, garment.triangles, zero, zero, mesh, is_skin=False
+    )
+
+
+def cap_surface(gl: moderngl.Context) -> Surface:
+    """Return the mass of the hair under the ribbons: dark, with neither pores nor shine."""
+    cap = hair_cap(face_mesh())
+    count = len(cap.points_mm)
+    colour = np.tile(np.array(HAIR_COLOUR) * SCALP, (count, 1))
+    rows = np.column_stack([cap.points_mm, cap.normals, colour, np.zeros((count, 5))])
+    zero = np.zeros(count)
+    return Surface(
+        cap.points_mm, cap.normals, cap.triangles, zero, zero, CellMesh(gl, rows, cap.triangles)
+    )
+
+
+def _skin_rows(part: SkinPart, albedo: Floats) -> Floats:
+    detail = detail_coordinates(part.points_mm)
+    sunk = part.points_mm - part.normals * np.reshape(part.sink_mm, (-1, 1))
+    return np.column_stack([sunk, part.normals, albedo, detail, part.along_mm, part.lid])
+
+
+def _thinned_patch(eye: int) -> Indices:
+    """Return triangles that skip three of four rings' points: for views from further away."""
+    around, along = np.arange(0, AROUND, 4), np.append(np.arange(0, ALONG - 1, 3), ALONG - 1)
+    quads = grid_quads(len(around), len(along))
+    number = (around[:, None] * ALONG + along[None, :]).ravel()
+    triangles = number[quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)]
+    return np.asarray(triangles[:, ::-1] if eye == 0 else triangles)

@@ -1,0 +1,1 @@
+"""The surroundings: sky, sun, horizon, their cube maps and the background."""

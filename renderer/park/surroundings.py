@@ -1,0 +1,218 @@
+"""The surroundings: a park under a clear sky, as light, as reflection and as background.
+
+``shaders/environment.glsl`` is the one truth; everything here is drawn from it once per scene:
+static cube maps for the cornea, ambient light for all, and a panorama out of focus as background.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+from typing import Any, Final
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from renderer.cache import cached_arrays
+from renderer.clip import ClipSpec
+from renderer.light import Sky, Vector
+from renderer.park.cube_maps import FACE_AXES, CubeTarget, face_directions, read_face
+from renderer.park.sky import clear_sky
+from renderer.park.skyline import park_skyline
+from renderer.program import build_program
+from renderer.textures.tiling import tiling_noise
+
+AMBIENT_PX: Final = 64
+SMALLEST_LEVEL_PX: Final = 32
+BACKGROUND_CUBE_PX: Final = 1024
+
+
+@dataclass(frozen=True)
+class Defocus:
+    """How far the background is out of focus for cameras up to a distance from the face.
+
+    ``diameter_deg`` of the circle of confusion; a panorama ``width`` texels around holds it,
+    blurred with ``points`` lookups.
+    """
+
+    farthest_mm: float
+    diameter_deg: float
+    width: int
+    points: int
+
+
+# 30 mm of aperture seen from the plane in focus, a portrait lens wide open, at the four distances;
+# a table, so that nothing changes during an orbit. Nearer than 0.8 m a real lens blurs even more.
+DEFOCUS: Final = (
+    Defocus(270.0, 6.0, 512, 96),
+    Defocus(800.0, 4.0, 768, 64),
+    Defocus(2700.0, 1.15, 1536, 32),
+    Defocus(np.inf, 0.5, 2048, 16),
+)
+
+
+class Surroundings:
+    """The surroundings of a clip: ``sky`` (light), ``cube(size)`` and ``draw_background``."""
+
+    def __init__(self, gl: moderngl.Context, spec: ClipSpec) -> None:
+        self.gl = gl
+        self._clear = clear_sky(spec.sun_azimuth_deg, spec.sun_elevation_deg)
+        self._program = build_program(gl, "screen.vert", fragment="environment_face.frag")
+        self._screen = gl.vertex_array(self._program.gl_program, [])
+        self._maps = _environment_maps(gl)
+        self._cubes: dict[int, moderngl.TextureCube] = {}
+        self._panoramas: dict[Defocus, moderngl.Texture] = {}
+        self._background = build_program(gl, "direction.vert", fragment="background.frag")
+        self._background_screen = gl.vertex_array(self._background.gl_program, [])
+
+    @functools.cached_property
+    def sky(self) -> Sky:
+        """The light: the sun, and the surroundings' ambient light without it."""
+        cube = self.cube(AMBIENT_PX)
+        faces = np.stack([read_face(cube, face)[..., :3] for face in range(6)])
+        return Sky(
+            sun_direction=self._clear.sun_direction,
+            sun_irradiance=self._clear.sun_irradiance,
+            ambient_sh=project_to_sh(faces),
+        )
+
+    def cube(self, size: int) -> moderngl.TextureCube:
+        """Return the surroundings as a static cube map of ``size`` pixels a face, with levels."""
+        if size not in self._cubes:
+            self._cubes[size] = self._draw_cube(size)
+        return self._cubes[size]
+
+    def prepare_background(self, distance_mm: float) -> None:
+        """Draw the panorama for a camera distance now, before any frame: a frame draws no other."""
+        self._panorama(_defocus(distance_mm))
+
+    def draw_background(
+        self, *, view_matrix: npt.NDArray[np.floating], projection: npt.NDArray[np.floating]
+    ) -> None:
+        """Fill what nothing else covered, at the far plane; draw it after all opaque things."""
+        panorama = self._panorama(_defocus(_distance_mm(view_matrix)))
+        self._background.set(
+            u_view_matrix=view_matrix, u_projection=projection, u_panorama=panorama
+        )
+        self.gl.depth_func = "<="
+        self._background_screen.render(moderngl.TRIANGLES, vertices=3)
+        self.gl.depth_func = "<"
+
+    def uniforms(self, footprint_rad: float) -> dict[str, Any]:
+        """Return what ``shaders/environment.glsl`` needs, for texels of that angle."""
+        return {**self._clear.uniforms(), **self._maps, "u_footprint_rad": footprint_rad}
+
+    def _draw_cube(self, size: int) -> moderngl.TextureCube:
+        cube = CubeTarget(self.gl, size, levels=level_count(size))
+        self.gl.enable_only(moderngl.NOTHING)
+        for face in range(6):
+            cube.attach(face)
+            self._program.set(
+                u_face=FACE_AXES[face], u_face_size=(size, size), **self.uniforms(2.0 / size)
+            )
+            self._screen.render(moderngl.TRIANGLES, vertices=3)
+        cube.build_levels()
+        return cube.texture
+
+    def _panorama(self, defocus: Defocus) -> moderngl.Texture:
+        if defocus not in self._panoramas:
+            self._panoramas[defocus] = self._draw_panorama(defocus)
+        return self._panoramas[defocus]
+
+    def _draw_panorama(self, defocus: Defocus) -> moderngl.Texture:
+        """Draw the panorama in a state of its own: this happens amid a frame's first view."""
+        radius = float(np.radians(defocus.diameter_deg) / 2)
+        size = (defocus.width, defocus.width // 2)
+        panorama = self.gl.texture(size, 4, dtype="f2")
+        panorama.repeat_y = False
+        target = self.gl.framebuffer([panorama])
+        with self.gl.scope(target, moderngl.NOTHING):
+            cube = self.cube(BACKGROUND_CUBE_PX)
+            target.use()
+            self._spread(cube, defocus, radius=radius)
+        return panorama
+
+    def _spread(self, cube: moderngl.TextureCube, defocus: Defocus, *, radius: float) -> None:
+        program = build_program(self.gl, "screen.vert", fragment="defocus.frag")
+        # Points on the disc are this far apart, in texels of the cube's finest level.
+        spacing = radius * math.sqrt(math.pi / defocus.points) * BACKGROUND_CUBE_PX / 2
+        program.set(
+            u_cube=cube,
+            u_panorama_size=(defocus.width, defocus.width // 2),
+            u_radius_rad=radius,
+            u_points=defocus.points,
+            u_lod=max(0.0, math.log2(spacing) + 0.5),
+            u_sun_towards=self._clear.sun_direction,
+            u_sun_radiance=np.minimum(self._clear.sun_irradiance / (np.pi * radius**2), 6.0e4),
+        )
+        self.gl.vertex_array(program.gl_program, []).render(moderngl.TRIANGLES, vertices=3)
+
+
+def level_count(size: int) -> int:
+    """Return how many levels a static cube map has: down to SMALLEST_LEVEL_PX."""
+    return max(1, (size // SMALLEST_LEVEL_PX).bit_length())
+
+
+def project_to_sh(faces: npt.NDArray[np.floating]) -> Vector:
+    """Project cube faces (6, n, n, 3) on the first nine spherical harmonics, (9, 3).
+
+    Real orthonormal basis in the order of Ramamoorthi and Hanrahan 2001, eq. 3.
+    """
+    size = faces.shape[1]
+    total = np.zeros((9, 3))
+    for face in range(6):
+        d = face_directions(size, face)
+        # Solid angle of a texel: 4 / n^2 / (1 + s^2 + t^2)^1.5, and 1 / that root is the cosine.
+        cosine = np.abs(d @ FACE_AXES[face][:, 2])
+        weight = 4.0 / size**2 * cosine**3
+        total += np.einsum("kij,ijc->kc", _sh_basis(d) * weight, faces[face].astype(float))
+    return np.asarray(total)
+
+
+def _sh_basis(d: Vector) -> Vector:
+    x, y, z = np.moveaxis(d, -1, 0)
+    return np.stack(
+        [
+            0.282095 * np.ones_like(x),
+            0.488603 * y,
+            0.488603 * z,
+            0.488603 * x,
+            1.092548 * x * y,
+            1.092548 * y * z,
+            0.315392 * (3 * z * z - 1),
+            1.092548 * x * z,
+            0.546274 * (x * x - y * y),
+        ]
+    )
+
+
+def _distance_mm(view_matrix: npt.NDArray[np.floating]) -> float:
+    matrix = np.asarray(view_matrix, dtype=float)
+    return float(np.linalg.norm(matrix[:3, :3].T @ matrix[:3, 3]))
+
+
+def _defocus(distance_mm: float) -> Defocus:
+    return next(step for step in DEFOCUS if distance_mm <= step.farthest_mm)
+
+
+def _environment_maps(gl: moderngl.Context) -> dict[str, moderngl.Texture]:
+    skyline = cached_arrays("park skyline", lambda: dict(park_skyline()))
+    noise = cached_arrays("tiling noise", lambda: {"noise": tiling_noise()})["noise"]
+    return {
+        "u_noise": _texture(gl, noise, wraps_y=True),
+        "u_skyline_albedo": _texture(gl, skyline["albedo"], wraps_y=False),
+        "u_skyline_shape": _texture(gl, skyline["shape"], wraps_y=False),
+    }
+
+
+def _texture(
+    gl: moderngl.Context, pixels: npt.NDArray[np.generic], *, wraps_y: bool
+) -> moderngl.Texture:
+    height, width, channels = pixels.shape
+    texture = gl.texture((width, height), channels, np.ascontiguousarray(pixels).tobytes())
+    texture.build_mipmaps()
+    texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
+    texture.repeat_y = wraps_y
+    return texture

@@ -1,0 +1,1 @@
+"""What all procedural textures share: noise, fibres, sizes, tiling."""
