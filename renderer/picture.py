@@ -28,7 +28,6 @@ class Picture:
         self._display = gl.framebuffer([gl.texture(size, 4)])
         self._resolve = build_program(gl, "screen.vert", fragment="resolve.frag")
         self._screen = gl.vertex_array(self._resolve.gl_program, [])
-        self._bytes = bytearray(size[0] * size[1] * 4)
 
     def begin(self) -> None:
         """Clear the radiance target and make it the one that is drawn to."""
@@ -51,6 +50,5 @@ class Picture:
         self.gl.enable_only(moderngl.NOTHING)
         self._resolve.set(u_radiance=self._radiance, u_exposure=EXPOSURE, u_height=self.size[1])
         self._screen.render(moderngl.TRIANGLES, vertices=3)
-        self._display.read_into(self._bytes, components=4)
-        pixels = np.frombuffer(self._bytes, np.uint8).reshape(self.size[1], self.size[0], 4)
-        return np.ascontiguousarray(pixels[..., :3])
+        pixels = np.frombuffer(self._display.read(components=3, alignment=1), np.uint8)
+        return pixels.reshape(self.size[1], self.size[0], 3)

@@ -1,0 +1,40 @@
+"""The last pass: exact tone curve and sRGB, edges averaged after the curve, first row on top."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+
+from renderer.picture import EXPOSURE, Picture
+
+
+def reference(radiance: np.ndarray) -> np.ndarray:
+    u = radiance * EXPOSURE
+    c = np.clip((u * (2.51 * u + 0.03)) / (u * (2.43 * u + 0.59) + 0.14), 0, 1)
+    return np.where(c < 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055) * 255
+
+
+def test_flat_radiance_becomes_srgb_within_the_dither(gl: moderngl.Context) -> None:
+    picture = Picture(gl, (64, 64))
+    for value in (0.0, 0.003, 0.05, 0.18, 0.7, 2.0, 40.0):
+        picture.begin()
+        picture.target.clear(value, value / 2, value / 4, 1.0)
+        frame = picture.finish().astype(float)
+        for channel, share in enumerate((1, 0.5, 0.25)):
+            wanted = reference(np.array(value * share))
+            assert np.abs(frame[..., channel] - wanted).max() <= 1.02
+            assert abs(frame[..., channel].mean() - wanted) < 0.08, (value, channel)
+
+
+def test_the_first_row_is_the_top_and_equal_frames_are_equal_bytes(gl: moderngl.Context) -> None:
+    picture = Picture(gl, (64, 32))
+    frames = []
+    for _ in range(2):
+        picture.begin()
+        picture.use_rectangle((0, 16, 64, 16))  # the upper half in GL's order
+        picture.target.clear(1.0, 1.0, 1.0, 1.0, viewport=(0, 16, 64, 16))
+        frames.append(picture.finish())
+    assert frames[0].shape == (32, 64, 3)
+    assert frames[0][:16].min() > 190
+    assert frames[0][16:].max() <= 1
+    assert frames[0].tobytes() == frames[1].tobytes()
