@@ -17,6 +17,7 @@ from renderer.eye.anatomy import CORNEA_IOR, IRIS_Z_MM, LIMBUS_RADIUS_MM
 from renderer.eye.caustics import MAP_EDGE_MM
 from renderer.eye.lids import LidRims
 from renderer.eye.optics import conic_normal, cornea_from_inside, fresnel, refract
+from renderer.spherical_harmonics import sh_basis
 
 Array = npt.NDArray[np.float64]
 
@@ -25,26 +26,6 @@ LID_SOFTNESS_MM: Final = 0.5
 LID_SOFTENING: Final = 0.12  # per mm of way: grazing rays meet lashes and a rounded edge
 LID_REFLECTANCE: Final = (0.38, 0.24, 0.18)  # skin, linear Rec. 709
 _ANGLES: Final = (24, 48)  # polar and azimuthal directions of the hemisphere
-
-
-def sh_basis(directions: Array) -> Array:
-    """Return the nine real orthonormal spherical harmonics up to order 2, (..., 9)."""
-    x, y, z = np.moveaxis(directions, -1, 0)
-    one = np.ones_like(x)
-    return np.stack(
-        [
-            0.282095 * one,
-            0.488603 * y,
-            0.488603 * z,
-            0.488603 * x,
-            1.092548 * x * y,
-            1.092548 * y * z,
-            0.315392 * (3 * z * z - 1),
-            1.092548 * x * z,
-            0.546274 * (x * x - y * y),
-        ],
-        axis=-1,
-    )
 
 
 def chamber_irradiance(

@@ -22,6 +22,7 @@ from renderer.park.cube_maps import FACE_AXES, CubeTarget, face_directions, read
 from renderer.park.sky import clear_sky
 from renderer.park.skyline import park_skyline
 from renderer.program import build_program
+from renderer.spherical_harmonics import sh_basis
 from renderer.textures.tiling import tiling_noise
 
 AMBIENT_PX: Final = 64
@@ -167,25 +168,10 @@ def project_to_sh(faces: npt.NDArray[np.floating]) -> Vector:
         # Solid angle of a texel: 4 / n^2 / (1 + s^2 + t^2)^1.5, and 1 / that root is the cosine.
         cosine = np.abs(d @ FACE_AXES[face][:, 2])
         weight = 4.0 / size**2 * cosine**3
-        total += np.einsum("kij,ijc->kc", _sh_basis(d) * weight, faces[face].astype(float))
+        total += np.einsum(
+            "ijk,ijc->kc", sh_basis(d) * weight[..., None], faces[face].astype(float)
+        )
     return np.asarray(total)
-
-
-def _sh_basis(d: Vector) -> Vector:
-    x, y, z = np.moveaxis(d, -1, 0)
-    return np.stack(
-        [
-            0.282095 * np.ones_like(x),
-            0.488603 * y,
-            0.488603 * z,
-            0.488603 * x,
-            1.092548 * x * y,
-            1.092548 * y * z,
-            0.315392 * (3 * z * z - 1),
-            1.092548 * x * z,
-            0.546274 * (x * x - y * y),
-        ]
-    )
 
 
 def _distance_mm(view_matrix: npt.NDArray[np.floating]) -> float:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from renderer.eye.anatomy import CORNEA_IOR
-from renderer.eye.chamber import chamber_irradiance, lid_openness, sh_basis
+from renderer.eye.chamber import chamber_irradiance, lid_openness
 from renderer.eye.lids import anatomical_rims
+from renderer.spherical_harmonics import sh_basis
 
 CONSTANT = np.zeros((9, 3))
 CONSTANT[0] = 1 / 0.282095  # radiance 1 from everywhere
