@@ -31,14 +31,14 @@ def anatomical_rims(eye: int, *, samples: int = 65) -> LidRims:
     """Return the rims of an average open eye (0 the viewer's left, 1 right).
 
     Upper lid 1.6-2 mm over the superior limbus with its peak in the medial third, lower lid at the
-    limbus with its trough in the lateral third: opening about 9.5 mm (reference values of
-    eye anatomy: fissure 30 x 9.7 +- 1.2 mm).
+    limbus with its trough in the lateral third, both falling to the canthi like an almond's
+    outline: opening about 9.5 mm (reference values of eye anatomy: fissure 30 x 9.7 +- 1.2 mm).
     """
     temple = -1.0 if eye == 0 else 1.0  # the character's right eye is on the viewer's left
     towards_temple = np.linspace(-MEDIAL_CANTHUS_MM, LATERAL_CANTHUS_MM, samples)
     tilt = 2.0 * (towards_temple + MEDIAL_CANTHUS_MM) / (LATERAL_CANTHUS_MM + MEDIAL_CANTHUS_MM)
-    upper = 3.9 * (1 - _warp(towards_temple, peak_mm=-2.5) ** 2) ** 0.6
-    lower = -5.6 * (1 - _warp(towards_temple, peak_mm=2.5) ** 2) ** 0.7
+    upper = 3.9 * (1 - _warp(towards_temple, peak_mm=-2.5) ** 2) ** 0.85
+    lower = -5.6 * (1 - _warp(towards_temple, peak_mm=2.5) ** 2) ** 0.95
     curves = [
         np.column_stack([temple * towards_temple, y, _depth(towards_temple, y)])
         for y in (upper + tilt - 1.0, lower + tilt - 1.0)

@@ -6,6 +6,7 @@ left the globe.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -13,39 +14,82 @@ import numpy as np
 from renderer.body.makehuman import Floats, Indices
 from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, globe_height, rim_curves
 
-CARUNCLE_END_MM: Final = -9.2  # towards the pupil: under the globe's surface from here on
+CARUNCLE_END_MM: Final = -8.6  # towards the pupil: under the globe's surface from here on
+COVER_MM: Final = (-9.2, -11.0)  # the conjunctiva fades in over the sclera between these
+PLICA_MM: Final = -12.1  # the fold, a crescent open towards the pupil
+BUMP_MM: Final = (-14.2, 1.45)  # the caruncle's middle and half width along x
 MEMBRANE_START_MM: Final = 10.2
-ROWS: Final = 26
-COLUMNS: Final = 18
+ROWS: Final = 52
+COLUMNS: Final = 28
 
 
-def caruncle() -> tuple[Floats, Indices, Floats, Floats]:
-    """Return points (n, 3) in mm, quads (m, 4), and how much each point is caruncle or sclera."""
-    points, a, b = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM)
-    x, y, z = (points[..., axis] for axis in range(3))
-    hump = np.exp(-(((a - 0.33) / 0.25) ** 2) - ((b - 0.44) / 0.32) ** 2)
-    plica = np.exp(-(((a - 0.66 - 0.10 * (b - 0.5)) / 0.07) ** 2)) * np.sin(np.pi * b)
-    lobes = 0.12 * np.sin(9.0 * x + 3.0 * y) * np.sin(7.0 * y - 2.0 * x) * hump
-    sag = 0.9 * np.sin(np.pi * b) * np.clip(a * 4, 0, 1)
-    height = z - sag + 1.9 * hump + 0.45 * plica + lobes
-    globe = globe_height(np.minimum(np.hypot(x, y), 10.9))
-    near, under = _ease((a - 0.40) / 0.42), _ease((a - 0.8) / 0.2)
-    points[..., 2] = height * (1 - near) + (globe + 0.12 + 0.5 * plica - 0.6 * under) * near
-    pink = np.clip(1.25 * hump, 0, 1).ravel()
-    return points.reshape(-1, 3), _quads(), pink, 0.85 * _ease((a - 0.48) / 0.45).ravel()
+@dataclass(frozen=True)
+class Corner:
+    """A sheet of conjunctiva: points (n, 3) in mm, quads (m, 4), and per point 0 to 1
 
-
-def outer_membrane() -> tuple[Floats, Indices, Floats]:
-    """Return points (n, 3) in mm and quads (m, 4) of the conjunctiva in the outer corner.
-
-    The third array says how much each point looks like sclera.
+    ``pink`` how much it is caruncle, ``sclera`` how much sclera shines through, ``cover`` how
+    much of the globe it hides.
     """
+
+    points_mm: Floats
+    quads: Indices
+    pink: Floats
+    sclera: Floats
+    cover: Floats
+
+
+def caruncle() -> Corner:
+    """Return the inner corner: conjunctiva off the sclera, the plica's fold, the caruncle."""
+    points, _, b = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM)
+    x, y, z = (points[..., axis] for axis in range(3))
+    crescent = x + 0.9 * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
+    hump = np.exp(-(((x - BUMP_MM[0]) / BUMP_MM[1]) ** 2) - ((b - 0.47) / 0.30) ** 2)
+    plica = np.exp(-(((crescent - PLICA_MM) / 0.42) ** 2)) * np.sin(np.pi * b)
+    sag = 0.75 * np.sin(np.pi * b) * _ease((x - MEDIAL_MM[0]) / 1.5)
+    height = z - sag + 1.25 * hump + 0.35 * plica + _lumps(x, y) * np.sqrt(hump)
+    globe = globe_height(np.minimum(np.hypot(x, y), 11.2))
+    near = _ease((crescent + 12.6) / 2.0)
+    under = _ease((crescent + 9.3) / 0.6)
+    points[..., 2] = height * (1 - near) + (globe + 0.05 + 0.25 * plica - 0.6 * under) * near
+    cover = _ease((COVER_MM[0] - crescent) / (COVER_MM[0] - COVER_MM[1]))
+    cover = np.maximum(cover, _beside_globe(x, y))
+    return Corner(
+        points.reshape(-1, 3),
+        _quads(),
+        np.clip(1.25 * hump, 0, 1).ravel(),
+        (0.95 * _ease((crescent + 12.7) / 2.4)).ravel(),
+        cover.ravel(),
+    )
+
+
+def _beside_globe(x: Floats, y: Floats) -> Floats:
+    """Return 1 where no globe would be seen through the sheet, 0 well inside its outline."""
+    return _ease((np.hypot(x, y) - 10.75) / 0.4)
+
+
+def _lumps(x: Floats, y: Floats) -> Floats:
+    """Return the caruncle's glands in mm: lobes of a millimetre with finer grains on them."""
+    lobes = np.sin(5.1 * x + 2.3 * y + 0.4) * np.sin(4.7 * y - 2.9 * x)
+    grains = np.sin(11.3 * x - 4.1 * y) * np.sin(9.7 * y + 5.3 * x + 1.0)
+    return np.asarray(0.11 * lobes + 0.045 * grains)
+
+
+def outer_membrane() -> Corner:
+    """Return the conjunctiva in the outer corner."""
     points, a, b = _sheet(LATERAL_MM[0], MEMBRANE_START_MM)
     globe = globe_height(np.minimum(np.hypot(points[..., 0], points[..., 1]), 11.2))
     near, under = _ease(a / 0.6), _ease((a - 0.6) / 0.4)
     sheet = points[..., 2] - 0.4 * np.sin(np.pi * b)
     points[..., 2] = sheet * (1 - near) + (globe + 0.03 - 0.5 * under) * near
-    return points.reshape(-1, 3), _quads()[:, ::-1], 0.6 * _ease((a - 0.2) / 0.6).ravel()
+    return Corner(
+        points.reshape(-1, 3),
+        _quads()[:, ::-1],
+        np.zeros(a.size),
+        (0.9 * _ease(a / 0.6)).ravel(),
+        np.maximum(
+            1.0 - _ease((a - 0.15) / 0.5), _beside_globe(points[..., 0], points[..., 1])
+        ).ravel(),
+    )
 
 
 def _sheet(corner_x: float, inner_x: float) -> tuple[Floats, Floats, Floats]:

@@ -32,9 +32,9 @@ SOCKET_MM: Final = 18.2  # around MakeHuman's globe: everything nearer is socket
 class SkinPart:
     """One mesh of skin: (n, 3) points and unit normals, (m, 3) triangles, and per vertex
 
-    ``lips`` 0 to 1; ``lid`` 0 on the face to 1 on the lids; ``margin`` 1 on the wet rim of a lid;
-    ``caruncle`` 1 on it; ``wet`` 1 where tears stand; ``along_mm`` (n, 2) along and
-    across the lid.
+    ``lips`` 0 to 1; ``lid`` 0 on the face to 1 on the lids, in the corners how much they cover;
+    ``margin`` 1 on the wet rim of a lid; ``caruncle`` 1 on it; ``wet`` 1 where tears stand;
+    ``along_mm`` (n, 2) along and across the lid.
     """
 
     points_mm: Floats
@@ -232,7 +232,7 @@ def _patch(lid: lid_fit.LidPatch, eye: int) -> SkinPart:
     across = lid.across_mm
     edge = across[:, lid.rim_row][:, None]
     margin = 1.0 - _ramp(across, edge * 0.75, edge * 1.15)
-    wet = 1.0 - _ramp(across, edge * 0.15, edge * 0.5)
+    wet = 1.0 - _ramp(across, edge * 0.08, edge * 0.38)
     beyond = across - edge
     total = beyond[:, -1:]
     fade = 1.0 - _ramp(beyond, 0.25 * total, 0.85 * total)
@@ -258,23 +258,21 @@ def _ramp(x: Floats, start: Floats, end: Floats) -> Floats:
 
 
 def _corners(eye: int) -> SkinPart:
-    inner, inner_quads, bump, inner_white = caruncle()
-    outer, outer_quads, outer_white = outer_membrane()
-    points = to_world(np.concatenate([inner, outer]), eye)
-    triangles = triangles_of(np.concatenate([inner_quads, outer_quads + len(inner)]))
+    inner, outer = caruncle(), outer_membrane()
+    points = to_world(np.concatenate([inner.points_mm, outer.points_mm]), eye)
+    triangles = triangles_of(np.concatenate([inner.quads, outer.quads + len(inner.points_mm)]))
     if eye == 0:
         triangles = triangles[:, ::-1]
     one = np.ones(len(points))
-    pink = np.concatenate([bump, np.zeros(len(outer))])
     return SkinPart(
         points,
         vertex_normals(points, triangles),
         triangles,
         0 * one,
+        np.concatenate([inner.cover, outer.cover]),
         one,
-        one,
-        pink,
+        np.concatenate([inner.pink, outer.pink]),
         one,
         points[:, :2].copy(),
-        sclera=np.concatenate([inner_white, outer_white]),
+        sclera=np.concatenate([inner.sclera, outer.sclera]),
     )

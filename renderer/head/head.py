@@ -57,6 +57,7 @@ class Head:
         self._knit = TilePyramid(gl, knit_tile())
         skin = skin_surfaces(gl)
         self._surfaces = skin | {"cloth": cloth_surface(gl), "cap": cap_surface(gl)}
+        self._corners = [skin["corner0"].mesh, skin["corner1"].mesh]
         self._close = [item.mesh for name, item in skin.items() if name != "coarse"]
         self._distant = [
             item.distant or item.mesh for name, item in skin.items() if name not in ("fine", "rest")
@@ -85,7 +86,10 @@ class Head:
         skin.set(**view, u_pores=self._pores.at(TILE_PX / TILE_MM / density))
         close = distance < CLOSE_MM
         for mesh in [*(self._close if close else self._distant), self._mesh("cap")]:
+            if mesh in self._corners:  # conjunctiva fades into the sclera, sample by sample
+                self.gl.enable_direct(SAMPLE_ALPHA_TO_COVERAGE)
             mesh.draw(skin, clip, camera_mm=camera)
+            self.gl.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
         fabric.set(**view, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
         self.gl.disable(moderngl.CULL_FACE)  # the roll neck shows its inside
         self._mesh("cloth").draw(fabric, clip)

@@ -18,7 +18,7 @@ LOWER_COUNT: Final = 80
 BROW_COUNT: Final = 680
 LASH_POINTS: Final = 7
 BROW_POINTS: Final = 5
-LASH_COLOUR: Final = (0.028, 0.017, 0.012)
+LASH_COLOUR: Final = (0.052, 0.030, 0.019)
 BROW_COLOUR: Final = (0.030, 0.018, 0.011)
 # The brow's middle line from nose to temple: x, y, half width in mm, direction of growth in degrees
 # above the way to the temple.
@@ -50,9 +50,9 @@ def grow_lashes(lid: LidPatch, rng: np.random.Generator) -> Strands:
     lower = _lash_row(lid, rng, is_upper=False, count=LOWER_COUNT)
     points = np.concatenate([upper, lower])
     width = np.concatenate(
-        [rng.uniform(0.06, 0.10, len(upper)), rng.uniform(0.04, 0.07, len(lower))]
+        [rng.uniform(0.045, 0.085, len(upper)), rng.uniform(0.030, 0.055, len(lower))]
     )
-    tone = rng.uniform(0.7, 1.5, size=(len(points), 1))
+    tone = rng.uniform(0.5, 1.6, size=(len(points), 1))
     return Strands(points, width, np.array(LASH_COLOUR) * tone)
 
 
@@ -62,15 +62,17 @@ def _lash_row(lid: LidPatch, rng: np.random.Generator, *, is_upper: bool, count:
     on_lid = lid.is_upper > 0.8 if is_upper else lid.is_upper < 0.2
     x = ring[:, 0]
     allowed = np.flatnonzero(on_lid & (x > (-12.0 if is_upper else -9.5)) & (x < 12.4))
-    place = (np.arange(count) + rng.uniform(-0.45, 0.45, count)) / count
+    place = (np.arange(count) + rng.uniform(-0.8, 0.8, count)) / count
     index = allowed[0] + np.clip(place, 0, 1) * (allowed[-1] - allowed[0])
     row = lid.rim_row + rng.choice([0.0, 1.2, 2.4], size=count, p=[0.45, 0.35, 0.2])
     root = _on_patch(lid, index, row)
     root -= 0.08 * root / np.linalg.norm(root, axis=1, keepdims=True)
     length = _lash_lengths(root[:, 0], rng, is_upper=is_upper)
     start, end = _lash_directions(root, rng, is_upper=is_upper)
-    bend = root + start * (0.5 * length)[:, None]
-    tip = bend + end * (0.56 * length)[:, None]
+    # How soon a hair curls differs from hair to hair.
+    soon = rng.uniform(0.34, 0.5, count) if is_upper else np.full(count, 0.5)
+    bend = root + start * (soon * length)[:, None]
+    tip = bend + end * ((1.08 - soon) * length)[:, None]
     tip += _towards_clump(tip, rng)
     s = np.linspace(0, 1, LASH_POINTS)[None, :, None]
     curve = (1 - s) ** 2 * root[:, None] + 2 * s * (1 - s) * bend[:, None] + s**2 * tip[:, None]
@@ -92,7 +94,8 @@ def _lash_lengths(x: Floats, rng: np.random.Generator, *, is_upper: bool) -> Flo
     along = (x + 12.0) / 24.5
     shape = 0.50 + 0.55 * np.sin(np.pi * np.clip(0.12 + 0.72 * along, 0, 1)) ** 1.2
     longest = 7.8 if is_upper else 4.3
-    return np.asarray(longest * shape * rng.uniform(0.55, 1.12, len(x)))
+    grown = np.where(rng.random(len(x)) < 0.25, 0.55, 1.0)  # a quarter is still growing
+    return np.asarray(longest * shape * grown * rng.uniform(0.72, 1.15, len(x)))
 
 
 def _lash_directions(
@@ -101,11 +104,11 @@ def _lash_directions(
     """Return unit directions at the root and at the tip: forwards, fanning out, curling away."""
     count = len(root)
     fan = np.clip(root[:, 0] / 13.0 + 0.10, -1, 1) * (0.62 if is_upper else 0.5)
-    fan = fan + rng.normal(0, 0.13 if is_upper else 0.09, count)
-    lift = rng.normal(0, 0.08, count)
+    fan = fan + rng.normal(0, 0.17 if is_upper else 0.12, count)
+    lift = rng.normal(0, 0.11, count)
     if is_upper:
-        first = np.column_stack([fan * 0.6, -0.02 + lift, np.full(count, 0.95)])
-        last = np.column_stack([fan * 1.25, 0.95 + lift, np.full(count, 0.45)])
+        first = np.column_stack([fan * 0.6, -0.22 + lift, np.full(count, 0.95)])
+        last = np.column_stack([fan * 1.2, 1.05 + lift, np.full(count, 0.40)])
     else:
         first = np.column_stack([fan * 0.8, -0.35 + lift, np.full(count, 0.85)])
         last = np.column_stack([fan * 1.3, -0.42 + lift, np.full(count, 0.62)])
@@ -126,7 +129,7 @@ def _towards_clump(tip: Floats, rng: np.random.Generator) -> Floats:
     while at < len(order):
         size = int(rng.integers(1, 6))
         members = order[at : at + size]
-        strength = rng.uniform(0.15, 0.8)
+        strength = rng.uniform(0.1, 0.95)
         shift[members] = strength * (tip[members].mean(axis=0) - tip[members])
         at += size
     return shift

@@ -18,7 +18,8 @@ from renderer.body.makehuman import Floats, Indices
 from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim_curves, smooth_step
 
 TUCK_MM: Final = 11.0  # radius of the patch's innermost ring
-MARGIN_MM: Final = 1.9  # lid thickness at the rim
+MARGIN_MM: Final = 1.75  # lid thickness at the rim
+MARGIN_TURN: Final = (0.5, 0.1)  # of the margin against the globe's normal, lower and upper lid
 OUTLINE_MM: Final = (24.5, 22.5, 17.5, 17.0)  # patch ends: temple, nose, up, down of (0, 0)
 # Lift in mm of the outermost rings over the face, and how far they obey.
 ENDING: Final = ((0.0, 0.6), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0))
@@ -94,10 +95,14 @@ def _control_net(inner: Floats, is_upper: Floats, socket: Socket) -> tuple[Float
     xy = inner[:, :2]
     outward = _outward(xy)
     canthus = _canthus_nearness(xy)
-    up = is_upper[:, None]
+    up, one = is_upper[:, None], np.ones(AROUND)
     radial = inner / np.linalg.norm(inner, axis=1, keepdims=True)
-    margin = np.concatenate([outward * 0.55, np.full((AROUND, 1), 0.85)], axis=1)
-    margin = margin * canthus[:, None] + radial * (1 - canthus[:, None])
+    margin = np.concatenate([outward * 0.35, np.full((AROUND, 1), 0.85)], axis=1)
+    # The upper lid's margin looks down: from the front it hides behind the lid's outer edge.
+    turned = radial * np.column_stack(
+        [one, MARGIN_TURN[0] * (1 - is_upper) + MARGIN_TURN[1] * is_upper, one]
+    )
+    margin = margin * canthus[:, None] + turned * (1 - canthus[:, None])
     margin /= np.linalg.norm(margin, axis=1, keepdims=True)
     thick = MARGIN_MM * (1 - 0.45 * canthus) * (1.0 - 0.1 * is_upper)
     edge = inner + margin * thick[:, None]
@@ -184,7 +189,7 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
     platform = (2.7 - 0.8 * smooth_step((x - 2.0) / 10.0) - 0.7 * smooth_step((-x - 8.0) / 8.0)) * (
         1 - 0.45 * canthus
     )
-    fold = 1.9 * (1 - 0.7 * canthus)
+    fold = 1.5 * (1 - 0.7 * canthus)
     rows = [_skin_point(edge, outward, d * one, -0.02 * one) for d in (0.35, 0.8)]
     rows += [_skin_point(edge, outward, platform * share, 0.10 * one) for share in (0.5, 0.78)]
     rows.append(_skin_point(edge, outward, platform * 0.97, -0.15 * one))
@@ -197,7 +202,7 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
     after = crease + np.column_stack([*(outward * 1.2).T, 1.25 * fold])
     rows.append(after)
     rest = end - platform * 1.05
-    for share, bulge in ((0.2, 2.5), (0.36, 2.5), (0.53, 1.5), (0.7, 0.5), (0.87, 0.0)):
+    for share, bulge in ((0.2, 1.8), (0.36, 2.1), (0.53, 1.4), (0.7, 0.5), (0.87, 0.0)):
         face = _face_point(
             edge,
             outward,
@@ -205,7 +210,9 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
             socket=socket,
             lift=bulge * (1 - canthus),
         )
-        blend = smooth_step((share + 0.12) / 0.55 * one)
+        # A gentle slope up to the brow: a steep one would hang in its own shadow.
+        way = (share + 0.08) / 0.85 * one
+        blend = 0.5 * np.minimum(way, 1.0) + 0.5 * smooth_step(way)
         local = after[:, 2] + (face[:, 2] - after[:, 2]) * blend
         face[:, 2] = local
         rows.append(face)

@@ -25,8 +25,9 @@ CLEARANCE_MM: Final = 0.06  # tear film between rim and globe
 def rim_curves(*, samples: int = 129) -> tuple[Curve, Curve]:
     """Return the inner edges of upper and lower lid in patch space, canthus at the nose first.
 
-    Opening about 9.1 mm: the upper lid covers 1.9 mm of the cornea with its peak towards the nose,
-    the lower lid touches the limbus with its trough towards the temple.
+    Almond-shaped, opening about 9.5 mm: the upper lid covers 1.8 mm of the cornea with its peak
+    towards the nose, the lower lid touches the limbus with its trough towards the temple. Beside
+    the nose the rims are drawn out around the caruncle.
     """
     s = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, samples))  # dense at the canthi
     return _rim(s, upper=True), _rim(s, upper=False)
@@ -42,29 +43,23 @@ def lid_rims(eye: int) -> LidRims:
 
 def _rim(s: Floats, *, upper: bool) -> Curve:
     """Return the rim at shares 0 to 1 of the way from the nose to the temple."""
-    (x1, y1), (x0, y0) = LATERAL_MM, MEDIAL_MM
     # Cubic Bezier arcs, joined at the extremum; handles set the fullness towards each canthus.
     if upper:
-        peak, first, second = (-1.2, 3.75), (0.36, 0.62), (0.50, 0.62)
+        peak, medial, lateral = (
+            (-1.2, 4.05),
+            ((-13.4, -0.1), (-7.0, 4.05)),
+            ((5.0, 4.05), (9.2, 2.35)),
+        )
     else:
-        peak, first, second = (2.2, -5.35), (0.50, 0.58), (0.46, 0.60)
-    sign = 1.0 if upper else -1.0
-    share = (peak[0] - x0) / (x1 - x0)
+        peak, medial, lateral = (
+            (2.0, -5.5),
+            ((-12.6, -3.1), (-4.8, -5.5)),
+            ((6.2, -5.5), (9.8, -2.2)),
+        )
+    share = (peak[0] - MEDIAL_MM[0]) / (LATERAL_MM[0] - MEDIAL_MM[0])
     t = np.where(s < share, s / share, (s - share) / (1 - share))
-    nose = _bezier(
-        t,
-        (x0, y0),
-        (x0 + first[0] * (peak[0] - x0), y0 + sign * first[1] * abs(peak[1] - y0)),
-        (peak[0] - second[0] * (peak[0] - x0), peak[1]),
-        peak,
-    )
-    temple = _bezier(
-        t,
-        peak,
-        (peak[0] + 0.50 * (x1 - peak[0]), peak[1]),
-        (x1 - 0.26 * (x1 - peak[0]), y1 + sign * 0.50 * abs(peak[1] - y1)),
-        (x1, y1),
-    )
+    nose = _bezier(t, MEDIAL_MM, *medial, peak)
+    temple = _bezier(t, peak, *lateral, LATERAL_MM)
     xy = np.where((s < share)[:, None], nose, temple)
     return np.column_stack([xy, _rim_depth(xy)])
 

@@ -6,14 +6,17 @@ lips, nose, cheeks), melanin and veins tint the skin around the eyes.
 
 from __future__ import annotations
 
+import functools
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
+from scipy import ndimage
+from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats
 from renderer.camera import eye_centre_mm
-from renderer.head.face_mesh import SkinPart
+from renderer.head.face_mesh import SkinPart, face_mesh
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import inside_hairline
 from renderer.head.lashes import BROW, BROW_COLOUR
@@ -21,10 +24,10 @@ from renderer.head.lashes import BROW, BROW_COLOUR
 SCALP: Final = 0.55  # what is dark between the hairs, as a share of their colour
 BASE: Final = (0.60, 0.375, 0.275)
 LIPS: Final = (0.50, 0.235, 0.205)
-MARGIN: Final = (0.62, 0.340, 0.290)
-WET: Final = (0.60, 0.265, 0.235)
-SCLERA: Final = (0.68, 0.53, 0.47)  # seen through the conjunctiva in the corners
-CARUNCLE: Final = (0.64, 0.235, 0.200)
+MARGIN: Final = (0.62, 0.360, 0.280)
+WET: Final = (0.63, 0.340, 0.285)
+SCLERA: Final = (0.66, 0.555, 0.49)  # seen through the conjunctiva in the corners
+CARUNCLE: Final = (0.62, 0.255, 0.215)
 # Tints: centre x, y in mm, radii in mm, factor of the albedo. Both sides alike unless x is 0.
 ZONES: Final = (
     (44.0, -40.0, 22.0, 18.0, (1.03, 0.86, 0.84)),  # cheeks
@@ -36,6 +39,8 @@ ZONES: Final = (
 )
 TILE_MM: Final = 24.0  # edge of the tile of pores
 TILE_PX: Final = 1024
+FACE_X_MM: Final = (-40, 40)  # where the face's relief stretches a cylinder around the head
+FACE_Y_MM: Final = (-50, 48)
 
 
 def paint(part: SkinPart) -> tuple[Floats, Floats]:
@@ -80,12 +85,15 @@ def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
         lid = np.exp(-((x / 17.0) ** 2) - ((y - 1.0) / 11.0) ** 2)
         upper = np.exp(-(((x + 1.0) / 14.0) ** 2) - ((y - 8.0) / 4.5) ** 2)
         ring = np.exp(-(((x + 2.0) / 15.0) ** 2) - ((y + 11.5) / 5.0) ** 2)
+        plate = 4.1 * (1 - ((x + 1.2) / 14.5) ** 2) + 1.7  # between lashes and crease
+        plate = np.exp(-(((y - plate) / 1.9) ** 2) - (x / 14.0) ** 4)
         inner = np.exp(-(((x + 16.0) / 6.0) ** 2) - ((y + 1.0) / 9.0) ** 2)
         for weight, factor in (
-            (lid, (0.99, 0.89, 0.88)),
-            (upper, (0.99, 0.93, 0.93)),
-            (ring, (0.90, 0.85, 0.90)),
-            (inner, (0.93, 0.86, 0.90)),
+            (lid, (1.01, 0.94, 0.92)),
+            (upper, (1.04, 1.01, 1.01)),
+            (plate, (0.90, 0.83, 0.81)),
+            (ring, (0.94, 0.89, 0.92)),
+            (inner, (0.98, 0.93, 0.95)),
         ):
             albedo *= 1 + weight[:, None] * (np.array(factor) - 1)
 
@@ -95,8 +103,8 @@ def _gloss(part: SkinPart) -> Floats:
     x, y, _ = part.points_mm.T
     gloss = 0.35 + 0.25 * np.exp(-((x / 14.0) ** 2) - ((y + 25.0) / 28.0) ** 2)
     gloss += 0.15 * np.exp(-((x / 50.0) ** 2) - ((y - 50.0) / 25.0) ** 2)
-    gloss += 0.12 * part.lid + 0.25 * part.lips
-    return np.asarray(np.clip(np.maximum(gloss, 0.7 * part.margin), 0.0, 1.0))
+    gloss += 0.25 * part.lips - 0.2 * part.lid
+    return np.asarray(np.clip(np.maximum(gloss, 0.5 * part.margin), 0.0, 1.0))
 
 
 def pore_tile(seed: int = 11) -> npt.NDArray[np.uint8]:
@@ -175,6 +183,30 @@ def _blur(field: Floats, size_mm: float) -> Floats:
 def detail_coordinates(points_mm: Floats) -> Floats:
     """Return (n, 2) coordinates in the pore tile: wound around the head, in tiles."""
     x, y, z = points_mm.T
-    wound = 95.0 * np.arctan2(x, z + 95.0)
+    longer = ndimage.map_coordinates(
+        _surplus_width(), np.array([y - FACE_Y_MM[0], x - FACE_X_MM[0]]), order=1, mode="nearest"
+    )
+    wound = 95.0 * np.arctan2(x, z + 95.0) + longer
     is_ear = (np.abs(x) > 71.0) & (z < -60.0) & (np.abs(y + 15.0) < 50.0)
     return np.column_stack([np.where(is_ear, z, wound), y]) / TILE_MM
+
+
+@functools.cache
+def _surplus_width() -> Floats:
+    """Return by how many mm the way over the face from its middle exceeds that on a cylinder.
+
+    A grid (y, x) of 1 mm over FACE_Y_MM and FACE_X_MM: without it pores smear on the nose's flanks.
+    """
+    x = np.arange(FACE_X_MM[0], FACE_X_MM[1] + 1.0)
+    y = np.arange(FACE_Y_MM[0], FACE_Y_MM[1] + 1.0)
+    grid = np.stack(np.meshgrid(x, y), axis=-1)
+    front = face_mesh().fine.points_mm
+    front = front[front[:, 2] > -10.0]
+    distance, near = map(np.asarray, cKDTree(front[:, :2]).query(grid, k=4))
+    share = 1 / (distance + 0.3) ** 2
+    depth = (front[near, 2] * share).sum(axis=-1) / share.sum(axis=-1)
+    depth = ndimage.gaussian_filter(depth, (8.0, 1.5), mode="nearest")
+    over_face = np.hypot(1.0, np.gradient(depth, axis=1))
+    around = np.gradient(95.0 * np.arctan2(x, depth + 95.0), axis=1)
+    way = np.cumsum(over_face - around, axis=1)
+    return np.asarray(ndimage.gaussian_filter(way - way[:, [len(x) // 2]], 2.0, mode="nearest"))

@@ -27,8 +27,8 @@ void main() {
     vec4 pores = textureLod(u_pores, v_detail.xy, 0.0);
     vec2 slope = (pores.xy - 0.5) * (0.95 - 0.3 * v_lid);
     if (v_lid > 0.02) {
-        vec4 crepe = textureLod(u_pores, v_detail.zw * vec2(0.012, 0.075), 0.0);
-        slope += (crepe.xy - 0.5) * vec2(0.25, 1.3) * v_lid;
+        vec4 crepe = textureLod(u_pores, v_detail.zw * vec2(0.026, 0.08), 0.0);
+        slope += (crepe.xy - 0.5) * vec2(0.5, 1.3) * v_lid;
     }
     slope *= dry;
     vec3 n_detail = normalize(n - slope.x * t - slope.y * b);
@@ -46,5 +46,6 @@ void main() {
     lobes *= pores.b;
     if (dry < 0.99) lobes += (1.0 - dry) * min(gaussian_lobe(dot(n, h), 0.13), 300.0);
     vec3 mirrored = u_sun_irradiance * (v_surface.y * cosine * lobes);
-    out_radiance = vec4(albedo * max(diffuse, vec3(0.0)) + mirrored + v_sheen, 1.0);
+    float cover = 1.0 - (1.0 - dry) * (1.0 - v_lid);
+    out_radiance = vec4(albedo * max(diffuse, vec3(0.0)) + mirrored + v_sheen, cover);
 }

@@ -10,7 +10,7 @@ in vec3 in_albedo;
 in vec3 in_diffuse;   // radiance that a white skin would send back, scattering included
 in vec4 in_surface;   // gloss, ambient visibility, sun visibility, wetness
 in vec4 in_detail;    // pore tile's coordinates, lid's coordinates in mm
-in float in_lid;      // 1 on the lids' crepe
+in float in_lid;      // 1 on the lids' crepe; where tears stand, how much is covered
 
 uniform mat4 u_view_matrix;
 uniform mat4 u_projection;

@@ -93,13 +93,23 @@ def test_patches_end_on_the_face() -> None:
 
 
 def test_corners_are_closed_and_dive_under_the_globe() -> None:
-    inner, _, bump, _ = caruncle()
-    outer, _, _ = outer_membrane()
-    assert bump.max() > 0.9
-    for points in (inner, outer):
-        height = over_globe(points)
+    inner, outer = caruncle(), outer_membrane()
+    for corner in (inner, outer):
+        height = over_globe(corner.points_mm)
         assert np.nanmin(height) < -0.1
-    assert inner[bump > 0.5][:, 0].max() < -11.0
+    assert inner.pink.max() > 0.9
+    assert outer.pink.max() == 0.0
+    bump = inner.points_mm[inner.pink > 0.5]
+    assert bump[:, 0].max() < -11.0
+    assert 2.0 < np.ptp(bump[:, 0]) < 4.5
+
+
+def test_conjunctiva_fades_into_the_sclera_but_hides_what_lies_beside_the_globe() -> None:
+    for corner in (caruncle(), outer_membrane()):
+        r = np.hypot(corner.points_mm[:, 0], corner.points_mm[:, 1])
+        assert corner.cover[r > 11.5].min() == 1.0
+        assert corner.cover[r < 9.0].max(initial=0.0) < 0.1
+        assert np.count_nonzero((corner.cover > 0.1) & (corner.cover < 0.9)) > 30
 
 
 def test_patch_and_world_space_are_inverse() -> None:
