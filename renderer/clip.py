@@ -47,8 +47,8 @@ class ClipSpec:
     gaze_yaw_deg: float = 0.0
     gaze_pitch_deg: float = 0.0
     environment: str = "park"
-    sun_azimuth_deg: float = -35.0
-    sun_elevation_deg: float = 40.0
+    sun_azimuth_deg: float = -15.0
+    sun_elevation_deg: float = 42.0
     crowd: int = 5
 
     def __post_init__(self) -> None:

@@ -133,6 +133,6 @@ class Scene(Part):
     """Surroundings, sun and the other characters that the cornea reflects."""
 
     environment: Annotated[str, clip_value("environment")] = "park"
-    sun_azimuth_deg: Annotated[Real, clip_value("sun_azimuth_deg")] = -35.0
-    sun_elevation_deg: Annotated[Real, clip_value("sun_elevation_deg")] = 40.0
+    sun_azimuth_deg: Annotated[Real, clip_value("sun_azimuth_deg")] = -15.0
+    sun_elevation_deg: Annotated[Real, clip_value("sun_elevation_deg")] = 42.0
     crowd: Annotated[Whole, clip_value("crowd")] = 5
