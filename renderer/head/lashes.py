@@ -16,7 +16,7 @@ from renderer.head.lid_fit import LidPatch, Socket
 UPPER_COUNT: Final = 165  # adults: about 150 upper, 75 lower lashes in two or three rows
 LOWER_COUNT: Final = 80
 BROW_COUNT: Final = 680
-LASH_POINTS: Final = 7
+LASH_POINTS: Final = 8
 BROW_POINTS: Final = 5
 LASH_COLOUR: Final = (0.052, 0.030, 0.019)
 BROW_COLOUR: Final = (0.030, 0.018, 0.011)
@@ -95,7 +95,7 @@ def _lash_lengths(x: Floats, rng: np.random.Generator, *, is_upper: bool) -> Flo
     shape = 0.50 + 0.55 * np.sin(np.pi * np.clip(0.12 + 0.72 * along, 0, 1)) ** 1.2
     longest = 7.8 if is_upper else 4.3
     grown = np.where(rng.random(len(x)) < 0.25, 0.55, 1.0)  # a quarter is still growing
-    return np.asarray(longest * shape * grown * rng.uniform(0.72, 1.15, len(x)))
+    return np.asarray(longest * shape * grown * rng.uniform(0.75, 1.08, len(x)))
 
 
 def _lash_directions(
@@ -104,7 +104,10 @@ def _lash_directions(
     """Return unit directions at the root and at the tip: forwards, fanning out, curling away."""
     count = len(root)
     fan = np.clip(root[:, 0] / 13.0 + 0.10, -1, 1) * (0.62 if is_upper else 0.5)
-    fan = fan + rng.normal(0, 0.17 if is_upper else 0.12, count)
+    # Neighbours lean alike, so that hairs seldom cross.
+    knots = np.linspace(-13.0, 13.0, 19)
+    fan = fan + np.interp(root[:, 0], knots, rng.normal(0, 0.14, len(knots)))
+    fan = fan + rng.normal(0, 0.08, count)
     lift = rng.normal(0, 0.11, count)
     if is_upper:
         first = np.column_stack([fan * 0.6, -0.22 + lift, np.full(count, 0.95)])
@@ -127,7 +130,7 @@ def _towards_clump(tip: Floats, rng: np.random.Generator) -> Floats:
     shift = np.zeros_like(tip)
     at = 0
     while at < len(order):
-        size = int(rng.integers(1, 6))
+        size = int(rng.integers(1, 7))
         members = order[at : at + size]
         strength = rng.uniform(0.1, 0.95)
         shift[members] = strength * (tip[members].mean(axis=0) - tip[members])

@@ -99,9 +99,8 @@ def _control_net(inner: Floats, is_upper: Floats, socket: Socket) -> tuple[Float
     radial = inner / np.linalg.norm(inner, axis=1, keepdims=True)
     margin = np.concatenate([outward * 0.35, np.full((AROUND, 1), 0.85)], axis=1)
     # The upper lid's margin looks down: from the front it hides behind the lid's outer edge.
-    turned = radial * np.column_stack(
-        [one, MARGIN_TURN[0] * (1 - is_upper) + MARGIN_TURN[1] * is_upper, one]
-    )
+    rise = MARGIN_TURN[0] * (1 - is_upper) + MARGIN_TURN[1] * is_upper
+    turned = radial * np.column_stack([0.65 * one, rise, one])
     margin = margin * canthus[:, None] + turned * (1 - canthus[:, None])
     margin /= np.linalg.norm(margin, axis=1, keepdims=True)
     thick = MARGIN_MM * (1 - 0.45 * canthus) * (1.0 - 0.1 * is_upper)
@@ -189,7 +188,7 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
     platform = (2.7 - 0.8 * smooth_step((x - 2.0) / 10.0) - 0.7 * smooth_step((-x - 8.0) / 8.0)) * (
         1 - 0.45 * canthus
     )
-    fold = 1.5 * (1 - 0.7 * canthus)
+    fold = 2.1 * (1 - 0.7 * canthus)
     rows = [_skin_point(edge, outward, d * one, -0.02 * one) for d in (0.35, 0.8)]
     rows += [_skin_point(edge, outward, platform * share, 0.10 * one) for share in (0.5, 0.78)]
     rows.append(_skin_point(edge, outward, platform * 0.97, -0.15 * one))
@@ -199,10 +198,10 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
     lip[:, :2] -= outward * (0.10 * fold)[:, None]
     rows.append(lip + np.column_stack([0 * x, 0 * x, 0.55 * fold]))
     rows.append(lip + np.column_stack([*(outward * 0.35).T, 1.0 * fold]))
-    after = crease + np.column_stack([*(outward * 1.2).T, 1.25 * fold])
+    after = crease + np.column_stack([*(outward * 1.4).T, 1.25 * fold])
     rows.append(after)
     rest = end - platform * 1.05
-    for share, bulge in ((0.2, 1.8), (0.36, 2.1), (0.53, 1.4), (0.7, 0.5), (0.87, 0.0)):
+    for share, bulge in ((0.2, 0.8), (0.36, 0.9), (0.53, 0.6), (0.7, 0.3), (0.87, 0.0)):
         face = _face_point(
             edge,
             outward,
@@ -211,8 +210,8 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
             lift=bulge * (1 - canthus),
         )
         # A gentle slope up to the brow: a steep one would hang in its own shadow.
-        way = (share + 0.08) / 0.85 * one
-        blend = 0.5 * np.minimum(way, 1.0) + 0.5 * smooth_step(way)
+        way = min((share + 0.06) / 0.96, 1.0)
+        blend = (1 - (1 - way) ** 1.6) * one
         local = after[:, 2] + (face[:, 2] - after[:, 2]) * blend
         face[:, 2] = local
         rows.append(face)

@@ -90,7 +90,7 @@ def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
         inner = np.exp(-(((x + 16.0) / 6.0) ** 2) - ((y + 1.0) / 9.0) ** 2)
         for weight, factor in (
             (lid, (1.01, 0.94, 0.92)),
-            (upper, (1.04, 1.01, 1.01)),
+            (upper, (1.08, 1.06, 1.06)),
             (plate, (0.90, 0.83, 0.81)),
             (ring, (0.94, 0.89, 0.92)),
             (inner, (0.98, 0.93, 0.95)),

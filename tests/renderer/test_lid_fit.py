@@ -42,6 +42,26 @@ def test_the_opening_is_that_of_an_average_eye() -> None:
     assert upper[np.argmax(upper[:, 1]), 0] < 0 < lower[np.argmin(lower[:, 1]), 0]
 
 
+def test_the_fissure_is_an_almond() -> None:
+    upper, lower = lid_rims.rim_curves()
+    x = np.array([-14.0, -12.0, 0.0, 9.0, 11.0])
+    opening = np.interp(x, upper[:, 0], upper[:, 1]) - np.interp(x, lower[:, 0], lower[:, 1])
+    share = opening / opening[2]
+    assert (share[:2] < [0.35, 0.55]).all()
+    assert (share[3:] < [0.60, 0.32]).all()
+    # The iris shows over its whole width.
+    assert np.interp(5.9, upper[:, 0], upper[:, 1]) > 2.0
+    assert np.interp(-5.9, lower[:, 0], lower[:, 1]) < -3.0
+
+
+def test_the_upper_margin_hides_and_the_lower_shows_a_thin_edge_from_the_front() -> None:
+    patch = face_mesh().lids[1]
+    middle = np.abs(patch.points_mm[:, 2, 0]) < 5.0
+    rise = patch.points_mm[:, patch.rim_row, 1] - patch.points_mm[:, 2, 1]
+    assert np.abs(rise[middle & (patch.is_upper > 0.9)]).max() < 0.6
+    assert -1.1 < rise[middle & (patch.is_upper < 0.1)].mean() < -0.3
+
+
 def test_rims_touch_the_globe_wherever_they_lie_on_it() -> None:
     for curve in lid_rims.rim_curves():
         middle = np.abs(curve[:, 0]) < 7.0
