@@ -57,6 +57,39 @@ def test_the_pore_tile_repeats_without_a_seam() -> None:
     assert tile[..., 3].mean() == pytest.approx(127.5, abs=3.0)
 
 
+def test_pores_are_not_smeared_on_the_flanks_of_the_nose() -> None:
+    """Neighbours across the face lie as far apart in the tile as in space, up to a third."""
+    points = face_mesh().fine.points_mm
+    edges = face_mesh().fine.triangles[:, :2]
+    start, end = points[edges[:, 0]], points[edges[:, 1]]
+    step = end - start
+    flank = (np.abs(start[:, 0]) > 6) & (np.abs(start[:, 0]) < 15) & (np.abs(start[:, 1] + 25) < 14)
+    across = np.abs(step[:, 1]) < 0.25 * np.linalg.norm(step, axis=1)
+    chosen = edges[flank & across & (start[:, 2] > 0)]
+    tile = skin.detail_coordinates(points) * skin.TILE_MM
+    in_tile = np.linalg.norm(tile[chosen[:, 1]] - tile[chosen[:, 0]], axis=1)
+    in_space = np.linalg.norm(points[chosen[:, 1]] - points[chosen[:, 0]], axis=1)
+    assert len(chosen) > 20
+    assert 0.75 < np.median(in_tile / in_space) < 1.35
+
+
+def test_the_sockets_of_the_eyes_get_more_bounced_light_but_only_where_covered() -> None:
+    points = np.array([[31.0, 9.0, 14.0], [31.0, -80.0, 14.0]])
+    triangle = np.zeros((0, 3), dtype=int)
+    normals = np.tile([0.0, 0.0, 1.0], (2, 1))
+
+    def lit(share: float) -> np.ndarray:
+        free = np.full((2, DIRECTIONS), share, dtype=np.float32)
+        result = skin_light.light_skin(
+            points, normals, triangle, sky=even_sky(0.5), open_sky=free, sun=np.zeros(2)
+        )
+        return result.diffuse
+
+    covered, open_air = lit(0.5), lit(1.0)
+    assert (covered[0] > 1.3 * covered[1]).all()
+    np.testing.assert_allclose(open_air[0], open_air[1], rtol=1e-3)
+
+
 def test_scattering_keeps_energy_and_spreads_red_the_furthest() -> None:
     points, triangles = plane()
     spot = np.zeros((len(points), 3))
