@@ -201,7 +201,7 @@ def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) 
     after = crease + np.column_stack([*(outward * 1.4).T, 1.25 * fold])
     rows.append(after)
     rest = end - platform * 1.05
-    for share, bulge in ((0.2, 2.0), (0.36, 1.8), (0.53, 0.8), (0.7, 0.2), (0.87, 0.0)):
+    for share, bulge in ((0.2, 2.2), (0.36, 2.5), (0.53, 1.6), (0.7, 0.7), (0.87, 0.1)):
         face = _face_point(
             edge,
             outward,

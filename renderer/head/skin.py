@@ -103,7 +103,7 @@ def _gloss(part: SkinPart) -> Floats:
     x, y, _ = part.points_mm.T
     gloss = 0.35 + 0.25 * np.exp(-((x / 14.0) ** 2) - ((y + 25.0) / 28.0) ** 2)
     gloss += 0.15 * np.exp(-((x / 50.0) ** 2) - ((y - 50.0) / 25.0) ** 2)
-    gloss += 0.25 * part.lips - 0.2 * part.lid
+    gloss += 0.25 * part.lips - 0.12 * part.lid
     return np.asarray(np.clip(np.maximum(gloss, 0.5 * part.margin), 0.0, 1.0))
 
 
