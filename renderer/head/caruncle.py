@@ -50,7 +50,7 @@ def caruncle() -> Corner:
     globe = globe_height(np.minimum(np.hypot(x, y), 11.2))
     near = _ease((crescent + 12.6) / 2.0)
     under = _ease((crescent + 9.3) / 0.6)
-    points[..., 2] = height * (1 - near) + (globe + 0.05 + 0.25 * plica - 0.6 * under) * near
+    points[..., 2] = height * (1 - near) + (globe + 0.09 + 0.25 * plica - 0.6 * under) * near
     cover = _ease((COVER_MM[0] - crescent) / (COVER_MM[0] - COVER_MM[1]))
     cover = np.maximum(cover, _beside_globe(x, y))
     return Corner(
@@ -80,7 +80,7 @@ def outer_membrane() -> Corner:
     globe = globe_height(np.minimum(np.hypot(points[..., 0], points[..., 1]), 11.2))
     near, under = _ease(a / 0.6), _ease((a - 0.6) / 0.4)
     sheet = points[..., 2] - 0.4 * np.sin(np.pi * b)
-    points[..., 2] = sheet * (1 - near) + (globe + 0.03 - 0.5 * under) * near
+    points[..., 2] = sheet * (1 - near) + (globe + 0.08 - 0.55 * under) * near
     return Corner(
         points.reshape(-1, 3),
         _quads()[:, ::-1],

@@ -24,8 +24,8 @@ from renderer.head.lashes import BROW, BROW_COLOUR
 SCALP: Final = 0.55  # what is dark between the hairs, as a share of their colour
 BASE: Final = (0.60, 0.375, 0.275)
 LIPS: Final = (0.50, 0.235, 0.205)
-MARGIN: Final = (0.62, 0.360, 0.280)
-WET: Final = (0.63, 0.340, 0.285)
+MARGIN: Final = (0.59, 0.350, 0.265)
+WET: Final = (0.60, 0.320, 0.265)
 SCLERA: Final = (0.66, 0.555, 0.49)  # seen through the conjunctiva in the corners
 CARUNCLE: Final = (0.62, 0.255, 0.215)
 # Tints: centre x, y in mm, radii in mm, factor of the albedo. Both sides alike unless x is 0.
