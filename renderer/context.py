@@ -17,11 +17,6 @@ class GlIdentity:
     renderer: str
     version: str
 
-    @property
-    def is_software(self) -> bool:
-        """Whether the processor draws: timer queries mean nothing then."""
-        return any(name in self.renderer.lower() for name in ("llvmpipe", "softpipe", "swrast"))
-
 
 def create_context() -> moderngl.Context:
     """Open a context without a window through EGL.

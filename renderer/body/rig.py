@@ -1,4 +1,4 @@
-"""Skeletons of MakeHuman's people: joints fitted to a shape, skin weights, posing, a walk.
+"""Skeletons of MakeHuman's people: joints fitted to a shape, skin weights, posing.
 
 Pure numpy, CC0 data read through ``renderer.body.makehuman``. Rotations are given in world
 axes about a bone's head, relative to its parent: x pitches forwards (nod), y turns, z leans.
@@ -103,27 +103,6 @@ def rotation(axis: npt.ArrayLike, angle_deg: float) -> Floats:
     angle = np.radians(angle_deg)
     turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
     return np.asarray(turn)
-
-
-@functools.cache
-def walk_keys(name: str = "crappy_experimental_female") -> dict[str, dict[str, Floats]]:
-    """Read a walk cycle's keys: bone -> channel -> rows (frame, x, y, z), 40 frames a cycle.
-
-    Channels are ``location`` (metres) and ``rotation_euler`` (radians) in the bone's own axes of
-    the default_no_toes rig; feet, knees, hands and elbows are goals of inverse kinematics.
-    """
-    path = data_folder() / "mpfb2" / "walkcycles" / f"{name}.json"
-    animation = json.loads(path.read_text(encoding="utf-8"))["animation_data"]
-    keys: dict[str, dict[str, list[list[float]]]] = {}
-    for bone, frames in animation.items():
-        for frame, channels in frames.items():
-            for channel, record in channels.items():
-                rows = keys.setdefault(bone, {}).setdefault(channel, [])
-                rows.append([float(frame), *record["values"]])
-    return {
-        bone: {channel: np.array(rows) for channel, rows in channels.items()}
-        for bone, channels in keys.items()
-    }
 
 
 @functools.cache

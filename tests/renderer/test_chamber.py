@@ -7,7 +7,7 @@ import pytest
 
 from renderer.eye.anatomy import CORNEA_IOR
 from renderer.eye.chamber import chamber_irradiance, lid_openness
-from renderer.eye.lids import anatomical_rims
+from renderer.eye.lids import LidRims
 from renderer.spherical_harmonics import sh_basis
 
 CONSTANT = np.zeros((9, 3))
@@ -26,8 +26,8 @@ def test_the_iris_darkens_towards_its_root() -> None:
     assert row[-1] < 0.4 * row[0]
 
 
-def test_the_upper_lid_shades_the_upper_iris() -> None:
-    shaded = chamber_irradiance(CONSTANT, np.eye(3), rims=anatomical_rims(0), size_px=8)
+def test_the_upper_lid_shades_the_upper_iris(average_rims: tuple[LidRims, LidRims]) -> None:
+    shaded = chamber_irradiance(CONSTANT, np.eye(3), rims=average_rims[0], size_px=8)
     free = chamber_irradiance(CONSTANT, np.eye(3), rims=None, size_px=8)
     share = (shaded / free)[:, 4, 1]
     assert share[6] < share[1] < 1.0  # row 6 lies under the upper lid
@@ -53,10 +53,12 @@ def test_the_surroundings_turn_against_the_gaze() -> None:
     )
 
 
-def test_rays_pass_between_the_lids_and_end_on_them() -> None:
+def test_rays_pass_between_the_lids_and_end_on_them(
+    average_rims: tuple[LidRims, LidRims],
+) -> None:
     points = np.array([[0.0, 0.0, 12.5]] * 3)
     directions = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.02], [0.0, -1.0, 0.02]])
-    openness = lid_openness(points, directions, anatomical_rims(0))
+    openness = lid_openness(points, directions, average_rims[0])
     assert openness[0] == 1.0
     assert openness[1] < 0.5
     assert openness[2] < 1.0

@@ -16,7 +16,7 @@ from renderer.detail import Detail
 from renderer.eye import maps as eye_maps
 from renderer.eye.anatomy import CORNEA_IOR
 from renderer.eye.eyes import APPARENT_GAIN, Eyes, gaze_rotation
-from renderer.eye.lids import LidRims, anatomical_rims
+from renderer.eye.lids import LidRims
 from renderer.eye.sclera import ScleraMaps
 from renderer.eye.silhouette import opening_box, opening_points
 from renderer.eye.subsurface import Tissue
@@ -245,9 +245,10 @@ def test_the_right_eyes_maps_are_the_lefts_mirrored(bench: Bench) -> None:
     np.testing.assert_allclose(left[24:40, 8:56], right[24:40, 8:56][:, ::-1], atol=0.02)
 
 
-def test_the_upper_lid_shades_the_globe(bench: Bench) -> None:
-    lids = (anatomical_rims(0), anatomical_rims(1))
-    shaded = bench.picture(bench.eyes(OFF, sun=2.0, rims=lids))
+def test_the_upper_lid_shades_the_globe(
+    bench: Bench, average_rims: tuple[LidRims, LidRims]
+) -> None:
+    shaded = bench.picture(bench.eyes(OFF, sun=2.0, rims=average_rims))
     free = bench.picture(bench.eyes(OFF, sun=2.0))
     middle, top = 32 + 12, 32 + 17  # 2.6 and 3.7 mm above the axis
     ratio = shaded[..., 0] / np.maximum(free[..., 0], 1e-6)
@@ -301,10 +302,12 @@ def test_meshes_are_seen_when_facets_are_flat(bench: Bench) -> None:
     assert shades("off") < 0.5 * shades("low")
 
 
-def test_the_opening_box_holds_the_lids_and_the_cornea() -> None:
+def test_the_opening_box_holds_the_lids_and_the_cornea(
+    average_rims: tuple[LidRims, LidRims],
+) -> None:
+    rims = average_rims[0]
     orthographic = np.diag([1 / 20, 1 / 10, 1 / 20, 1.0])  # 40 x 20 mm on 400 x 200 px
-    x, y, width, height = opening_box(opening_points(anatomical_rims(0)), orthographic, (400, 200))
-    rims = anatomical_rims(0)
+    x, y, width, height = opening_box(opening_points(rims), orthographic, (400, 200))
     assert x <= 200 + 10 * rims.upper_mm[0, 0] <= x + width
     assert y + height == pytest.approx(100 + 10 * (rims.upper_mm[:, 1].max() + 1.5), abs=3)
     assert y == pytest.approx(100 + 10 * (rims.lower_mm[:, 1].min() - 1.5), abs=3)

@@ -49,9 +49,3 @@ def test_an_unknown_rig_or_bone_names_the_choices() -> None:
         rig.fit_rig(VERTICES, name="hero")
     with pytest.raises(ValueError, match=r'no bone "tail"; choose one of .*upperarm_l'):
         rig.fit_rig(VERTICES).index("tail")
-
-
-def test_the_walk_has_a_cycle_of_forty_frames() -> None:
-    keys = rig.walk_keys()
-    assert keys["left_foot_ik"]["location"].shape[1] == 4
-    assert keys["root"]["location"][-1, 0] == 40
