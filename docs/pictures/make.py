@@ -1,7 +1,7 @@
 """Draw the pictures of README.md anew: python docs/pictures/make.py
 
-lods.png: the viewer's left eye at the four LoDs, macroscopic, seen from 12 degrees to the right.
-distances.png: ultra beside low at the four distances.
+lods.jpg: the viewer's left eye at the four LoDs, macroscopic, seen from 12 degrees to the right.
+distances.jpg: ultra beside low at the four distances.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def main() -> None:
         spec = ClipSpec(left=detail, right=detail, width=1280, height=720)
         pixels = studio.renderer(spec).render(AZIMUTH_DEG, time_s=2.0).pixels
         eyes.append((lod, pixels[130:560, 20:620]))
-    write(eyes, columns=2, name="lods.png")
+    write(eyes, columns=2, name="lods.jpg")
     views = []
     for distance in DISTANCES:
         spec = ClipSpec(
@@ -38,7 +38,7 @@ def main() -> None:
         pixels = studio.renderer(spec).render(AZIMUTH_DEG, time_s=2.0).pixels
         half = Image.fromarray(pixels).resize((800, 450), Image.Resampling.LANCZOS)
         views.append((f"{distance}: ultra (left), low (right)", np.asarray(half)))
-    write(views, columns=2, name="distances.png")
+    write(views, columns=2, name="distances.jpg")
     studio.close()
 
 
@@ -53,7 +53,7 @@ def write(tiles: list[tuple[str, np.ndarray]], *, columns: int, name: str) -> No
         sheet.paste(Image.fromarray(pixels), (x, y))
         place = (x + width / 2, y + height + CAPTION_PX / 2)
         ImageDraw.Draw(sheet).text(place, caption, fill="black", font=font, anchor="mm")
-    sheet.quantize(256, dither=Image.Dither.FLOYDSTEINBERG).save(HERE / name, optimize=True)
+    sheet.save(HERE / name, quality=88, optimize=True)
 
 
 if __name__ == "__main__":
