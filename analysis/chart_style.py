@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import matplotlib as mpl
 import numpy as np
@@ -103,7 +103,7 @@ def message_figure(title: str, message: str, *, is_simulated: bool = False) -> F
     return figure
 
 
-def tidy(axes: Axes, *, grid: str = "y") -> None:
+def tidy(axes: Axes, *, grid: Literal["x", "y", ""] = "y") -> None:
     """Give a panel its quiet frame, ticks and grid."""
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
@@ -113,7 +113,7 @@ def tidy(axes: Axes, *, grid: str = "y") -> None:
     axes.set_axisbelow(True)
     axes.patch.set_visible(False)  # lets the label of simulated data show through
     if grid:
-        axes.grid(axis=grid, color="#ececec", linewidth=0.8)  # type: ignore[arg-type]  # "x", "y"
+        axes.grid(axis=grid, color="#ececec", linewidth=0.8)
 
 
 def rating_axis(axes: Axes, scale: tuple[int, int], *, is_labelled: bool = True) -> None:

@@ -88,7 +88,7 @@ def quality_statements(tables: Tables) -> list[str]:
             f"Missing ratings, left out and not replaced: {missing} of {len(counted)} "
             f"({percent(missing / len(counted))})."
         )
-    uncertified = int((counted["certified"] == False).fillna(False).sum())  # noqa: E712 - nullable
+    uncertified = int(counted["certified"].eq(False).fillna(False).sum())
     if uncertified:
         text.append(
             f"Ratings of presentations that failed the study's rule, kept and counted: "

@@ -43,7 +43,7 @@ def cached_arrays(key: str, make: Callable[[], dict[str, Array]]) -> dict[str, A
         pass
     arrays = make()
     buffer = io.BytesIO()
-    np.savez(buffer, **arrays)  # type: ignore[arg-type]  # numpy's stub takes the keywords for allow_pickle
+    np.savez(buffer, allow_pickle=False, **arrays)
     try:
         write_atomically(path, buffer.getvalue())
     except OSError:

@@ -98,11 +98,19 @@ class Program:
             if self.declared[name].startswith(("sampler", "isampler", "usampler")):
                 value.use(location=self.units[name])
             else:
-                self.gl_program[name].write(_pack(value, self.declared[name]))  # type: ignore[union-attr]  # declared uniforms are never blocks
+                plain_uniform(self.gl_program, name).write(_pack(value, self.declared[name]))
 
     def is_active(self, name: str) -> bool:
         """Whether the linked program still reads this uniform."""
         return name in self.gl_program
+
+
+def plain_uniform(gl_program: moderngl.Program, name: str) -> moderngl.Uniform:
+    """Return a linked program's uniform; raises TypeError for a block or an attribute."""
+    member = gl_program[name]
+    if not isinstance(member, moderngl.Uniform):
+        raise TypeError(f"{name}: a {type(member).__name__}, not a plain uniform")
+    return member
 
 
 def _pack(value: Any, kind: str) -> bytes:
@@ -143,7 +151,7 @@ def build_program(
     samplers = [name for name, kind in declared.items() if "sampler" in kind and name in program]
     units = {name: unit for unit, name in enumerate(samplers)}
     for name, unit in units.items():
-        program[name].value = unit  # type: ignore[union-attr]  # a sampler is a plain uniform
+        plain_uniform(program, name).value = unit
     return Program(program, declared, units)
 
 

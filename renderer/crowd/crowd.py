@@ -13,7 +13,7 @@ from renderer.clip import ClipSpec
 from renderer.crowd.figure import Body
 from renderer.crowd.stage import GROUND_MM, STAGE, build_figures, light_shares
 from renderer.light import Light
-from renderer.program import assemble, build_program
+from renderer.program import assemble, build_program, plain_uniform
 
 Floats = npt.NDArray[np.float64]
 
@@ -113,8 +113,8 @@ class Crowd:
 
     def _skin(self, number: int, transforms: Floats) -> None:
         matrices = np.swapaxes(transforms, 1, 2).astype(np.float32)
-        bones = self._pose_program["u_bones"]
-        bones.write(np.ascontiguousarray(matrices).tobytes())  # type: ignore[union-attr]  # a plain uniform
+        bones = plain_uniform(self._pose_program, "u_bones")
+        bones.write(np.ascontiguousarray(matrices).tobytes())
         self._rest[number].transform(
             self._posed, moderngl.POINTS, buffer_offset=self.figures[number].first_vertex * 24
         )

@@ -69,3 +69,11 @@ def test_a_uniform_of_an_unselected_level_is_skipped_and_an_unknown_one_refused(
         assert built.is_active("u_ior") is active
         with pytest.raises(KeyError, match="u_iro: no shader of this program declares"):
             built.set(u_iro=1.0)
+
+
+def test_a_name_that_is_no_plain_uniform_is_refused(gl: moderngl.Context, shaders: Path) -> None:
+    (shaders / "a.vert").write_text("in vec4 a_p;\nvoid main() { gl_Position = a_p; }\n")
+    (shaders / "f.frag").write_text("out vec4 o;\nvoid main() { o = vec4(1.0); }\n")
+    built = program.build_program(gl, "a.vert", fragment="f.frag")
+    with pytest.raises(TypeError, match="a_p: a Attribute, not a plain uniform"):
+        program.plain_uniform(built.gl_program, "a_p")
