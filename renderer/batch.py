@@ -25,7 +25,8 @@ from renderer.camera import iris_px
 from renderer.clip import ClipSpec
 from renderer.encode import decode, open_encoder
 from renderer.fidelity import Rectangle, eye_rectangles, psnr_db, ssim
-from renderer.manifest import ClipRecord, code_version, read_manifest, write_manifest
+from renderer.manifest import ClipRecord, read_manifest, write_manifest
+from renderer.sources import code_version
 
 if TYPE_CHECKING:
     from renderer.frame import Frame

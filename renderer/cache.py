@@ -1,7 +1,7 @@
 """A disk cache for bakes that depend on nothing but their key: textures, tables, cone maps.
 
-The cache may be deleted at any time. Keys carry the renderer's code version, so a changed recipe
-never meets an old bake.
+The cache may be deleted at any time. Keys carry the version of the code that bakes, so a changed
+recipe never meets an old bake.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from renderer.manifest import code_version, write_atomically
+from renderer.manifest import write_atomically
+from renderer.sources import module_version
 
 Array = npt.NDArray[np.generic]
 
@@ -31,10 +32,11 @@ def cache_folder() -> Path:
 def cached_arrays(key: str, make: Callable[[], dict[str, Array]]) -> dict[str, Array]:
     """Return named arrays from the cache, or make and keep them.
 
-    ``key`` names everything that the arrays depend on besides the renderer's code.
+    ``key`` names everything that the arrays depend on besides the code of the module that ``make``
+    is written in and of what that module imports: arrays from elsewhere belong in it.
     A damaged or unreadable file is made anew; a folder that cannot be written is no error.
     """
-    digest = hashlib.sha256(f"{code_version()}:{key}".encode()).hexdigest()[:24]
+    digest = hashlib.sha256(f"{module_version(make.__module__)}:{key}".encode()).hexdigest()[:24]
     path = cache_folder() / f"{digest}.npz"
     try:
         with np.load(path, allow_pickle=False) as kept:
@@ -53,4 +55,9 @@ def cached_arrays(key: str, make: Callable[[], dict[str, Array]]) -> dict[str, A
 
 def cached_array(key: str, make: Callable[[], Array]) -> Array:
     """Return one array from the cache, or make and keep it."""
-    return cached_arrays(key, lambda: {"array": make()})["array"]
+
+    def named() -> dict[str, Array]:
+        return {"array": make()}
+
+    named.__module__ = make.__module__
+    return cached_arrays(key, named)["array"]

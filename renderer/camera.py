@@ -62,6 +62,15 @@ def eye_centre_mm(eye: int) -> npt.NDArray[np.float64]:
     return np.array([(-0.5 + eye) * INTEROCULAR_MM, 0.0, 0.0])
 
 
+def gaze_deg(spec: ClipSpec, eye: int) -> tuple[float, float]:
+    """Return yaw to the viewer's right and pitch upwards of one eye's gaze; eyes converge inwards.
+
+    ``eye`` is the viewer's left (0) or right (1).
+    """
+    inwards = 0.5 - eye  # the left eye turns to the viewer's right, the right one to the left
+    return spec.gaze_yaw_deg + inwards * spec.vergence_deg, spec.gaze_pitch_deg
+
+
 def camera_radius_mm(distance: str) -> float:
     """Return the orbit's radius that gives the distance's iris diameter at azimuth 0."""
     focal_px = REFERENCE_LINES / 2 / math.tan(math.radians(VERTICAL_FOV_DEG) / 2)

@@ -19,6 +19,7 @@ PRESETS: Final = ("thesis", "calibrated")
 IRIS_COLOURS: Final = ("blue", "grey", "green", "hazel", "amber", "brown", "dark-brown")
 ENVIRONMENTS: Final = ("park",)
 CROWDS: Final = (0, 5)
+CAUSTIC_PATTERNS: Final = ("computed", "painted")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,6 +29,10 @@ class ClipSpec:
     Left and right are the viewer's, as seen on the screen. Angles are in degrees: azimuth 0 faces
     the character, positive azimuths lie to the viewer's right, elevation is above the horizon.
     ``orbit_direction`` "rightward" runs from ``-orbit_deg / 2`` to ``+orbit_deg / 2``.
+    ``vergence_deg`` is the angle between the two gazes, 0 for parallel eyes; ``blink`` how far the
+    lids are closed, 0 open to 1 shut. ``subsurface_samples`` and ``caustic_pattern`` take the
+    thesis's own forms of two effects, for comparison: 0 integrates the layers our way, 2 to 200 is
+    its left-endpoint sum with so many samples; "painted" is its artist's caustic map.
     """
 
     left: Detail
@@ -46,10 +51,14 @@ class ClipSpec:
     pupil_mm: float = 4.0
     gaze_yaw_deg: float = 0.0
     gaze_pitch_deg: float = 0.0
+    vergence_deg: float = 0.0
+    blink: float = 0.0
     environment: str = "park"
     sun_azimuth_deg: float = -15.0
     sun_elevation_deg: float = 42.0
     crowd: int = 5
+    subsurface_samples: int = 0
+    caustic_pattern: str = "computed"
 
     def __post_init__(self) -> None:
         faults = self._faults()
@@ -65,6 +74,7 @@ class ClipSpec:
             "iris_colour": IRIS_COLOURS,
             "environment": ENVIRONMENTS,
             "crowd": CROWDS,
+            "caustic_pattern": CAUSTIC_PATTERNS,
         }
         ranges = {
             "orbit_deg": (0.0, 180.0),
@@ -75,6 +85,8 @@ class ClipSpec:
             "pupil_mm": (1.5, 8.0),
             "gaze_yaw_deg": (-35.0, 35.0),
             "gaze_pitch_deg": (-35.0, 25.0),
+            "vergence_deg": (0.0, 20.0),
+            "blink": (0.0, 1.0),
             "sun_azimuth_deg": (-180.0, 180.0),
             "sun_elevation_deg": (0.0, 90.0),
         }
@@ -89,6 +101,10 @@ class ClipSpec:
             for name, (low, high) in ranges.items()
             if not low <= getattr(self, name) <= high
         ]
+        if self.subsurface_samples != 0 and not 2 <= self.subsurface_samples <= 200:
+            faults.append(
+                f"subsurface_samples: {self.subsurface_samples} is neither 0 nor within 2 to 200"
+            )
         faults += [
             f"{name}: {getattr(self, name)} is odd; H.264 in 4:2:0 needs an even number of pixels"
             for name in ("width", "height")

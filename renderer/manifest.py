@@ -5,16 +5,15 @@ Pure apart from reading and writing its own file; it knows neither GL nor study.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import tempfile
 from dataclasses import asdict, dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
 from renderer.clip import ClipSpec
+from renderer.sources import code_version
 
 MANIFEST_NAME: Final = "manifest.json"
 SCHEMA: Final = 1
@@ -116,15 +115,3 @@ def write_atomically(path: Path, data: bytes) -> None:
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
-
-
-@cache
-def code_version() -> str:
-    """Return 16 hexadecimal digits over the renderer's own sources: same code, same frames."""
-    digest = hashlib.sha256()
-    root = Path(__file__).parent
-    for path in sorted(root.rglob("*")):
-        if path.suffix in {".py", ".glsl", ".vert", ".frag", ".comp"}:
-            digest.update(path.relative_to(root).as_posix().encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]

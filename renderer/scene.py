@@ -35,6 +35,8 @@ def scene_key(spec: ClipSpec) -> SceneKey:
         spec.sun_elevation_deg,
         spec.gaze_yaw_deg,
         spec.gaze_pitch_deg,
+        spec.vergence_deg,
+        spec.blink,
         spec.crowd,
     )
 

@@ -15,7 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import eye_centre_mm
+from renderer.camera import eye_centre_mm, gaze_deg
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.anatomy import shader_constants
@@ -148,7 +148,7 @@ class Eyes:
             fragment="eye.frag",
             constants=eye_constants(detail, left_sum=left_sum),
         )
-        turn = gaze_rotation(spec.gaze_yaw_deg, spec.gaze_pitch_deg)
+        turn = gaze_rotation(*gaze_deg(spec, eye))
         gain = APPARENT_GAIN if detail.caustics in {"high", "ultra"} else 1.0
         placed = {
             **light.uniforms(),

@@ -5,6 +5,7 @@ How free each direction is depends on the head alone and is kept in the cache.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, Final
@@ -46,10 +47,20 @@ def open_sky(
         free = sky_visibility(gl, draw_depth, regions)
         return {name: np.round(share * 255).astype(np.uint8) for name, share in free.items()}
 
-    kept = cached_arrays("the head's open sky", make)
+    kept = cached_arrays(f"the head's open sky {_digest(surfaces)}", make)
     return {
         name: np.asarray(share, dtype=np.float32) / np.float32(255) for name, share in kept.items()
     }
+
+
+def _digest(surfaces: Mapping[str, Surface]) -> str:
+    """Name the shapes: the same surfaces leave the same sky open."""
+    digest = hashlib.sha256()
+    for name, item in sorted(surfaces.items()):
+        digest.update(name.encode())
+        digest.update(np.ascontiguousarray(item.points_mm).tobytes())
+        digest.update(np.ascontiguousarray(item.triangles).tobytes())
+    return digest.hexdigest()
 
 
 def light_surfaces(

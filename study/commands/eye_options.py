@@ -37,6 +37,10 @@ def spec_of(options: argparse.Namespace) -> ClipSpec:
         height=height,
         gaze_yaw_deg=options.gaze[0],
         gaze_pitch_deg=options.gaze[1],
+        vergence_deg=options.vergence,
+        blink=options.blink,
+        subsurface_samples=options.subsurface_samples,
+        caustic_pattern=options.caustic_pattern,
     )
     given = {name: value for name, value in optional.items() if value is not None}
     return replace(spec, **options.iris, **given)

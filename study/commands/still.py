@@ -19,7 +19,7 @@ DESCRIPTION = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
-    from renderer.clip import CROWDS, DISTANCES, PRESETS
+    from renderer.clip import CAUSTIC_PATTERNS, CROWDS, DISTANCES, PRESETS
     from renderer.detail import LEVELS
 
     levels = ", ".join(LEVELS)
@@ -69,6 +69,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=(0.0, 0.0),
         metavar=("YAW", "PITCH"),
         help="direction of both eyes in degrees, to the viewer's right and up",
+    )
+    parser.add_argument(
+        "--vergence", type=float, default=0.0, metavar="DEG", help="angle between the two gazes"
+    )
+    parser.add_argument(
+        "--blink",
+        type=float,
+        default=0.0,
+        metavar="SHARE",
+        help="how far the lids are closed, 0 (default) to 1",
+    )
+    parser.add_argument(
+        "--subsurface-samples",
+        type=int,
+        default=0,
+        metavar="N",
+        help="the thesis's own sum with 2 to 200 samples instead of our integrator (0, default)",
+    )
+    parser.add_argument(
+        "--caustic-pattern",
+        choices=CAUSTIC_PATTERNS,
+        default="computed",
+        help="painted: the thesis's artist's map (default: %(default)s)",
     )
     parser.add_argument(
         "--iris",

@@ -127,6 +127,10 @@ class Eye(Part):
     pupil_mm: Annotated[Real, clip_value("pupil_mm")] = 4.0
     gaze_yaw_deg: Annotated[Real, clip_value("gaze_yaw_deg")] = 0.0
     gaze_pitch_deg: Annotated[Real, clip_value("gaze_pitch_deg")] = 0.0
+    vergence_deg: Annotated[Real, clip_value("vergence_deg")] = 0.0
+    blink: Annotated[Real, clip_value("blink")] = 0.0
+    subsurface_samples: Annotated[Whole, clip_value("subsurface_samples")] = 0
+    caustic_pattern: Annotated[str, clip_value("caustic_pattern")] = "computed"
 
 
 class Scene(Part):

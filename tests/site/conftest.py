@@ -19,7 +19,8 @@ import uvicorn
 from imageio_ffmpeg import write_frames
 
 from renderer.clip import ClipSpec
-from renderer.manifest import ClipRecord, Manifest, code_version, write_manifest
+from renderer.manifest import ClipRecord, Manifest, write_manifest
+from renderer.sources import code_version
 from study.data import export, jobs, participants, researchers, studies
 from study.data.database import Database, open_database
 from study.design.definition import StudyDefinition, parse_definition, read_definition

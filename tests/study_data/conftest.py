@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from renderer.manifest import ClipRecord, Manifest, code_version, read_manifest, write_manifest
+from renderer.manifest import ClipRecord, Manifest, read_manifest, write_manifest
+from renderer.sources import code_version
 from study.data import answers, arms, participants, progress, studies, views
 from study.data.database import Database, open_database
 from study.data.participants import Participant
