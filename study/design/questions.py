@@ -170,16 +170,16 @@ def read_answer(question: Question, given: object) -> Value | None:
     raise ValueError("Please choose one of the answers shown.")
 
 
-def _read_text(question: TextQuestion, text: str) -> str:
+def _read_text(question: TextQuestion, text: str) -> str | None:
     # U+0000 cannot be stored by PostgreSQL; lone surrogates cannot be encoded at all.
-    cleaned = text.replace("\x00", "").replace("\r\n", "\n")
+    cleaned = text.replace("\x00", "").replace("\r\n", "\n").strip()
     cleaned = cleaned.encode("utf-8", "replace").decode("utf-8")
     if len(cleaned) > question.max_chars:
         raise ValueError(
             f"Please shorten your text to {question.max_chars} characters; "
             f"it has {len(cleaned)} now."
         )
-    return cleaned
+    return cleaned or None  # a text of nothing but such characters is a skipped question
 
 
 def _read_number(question: NumberQuestion, text: str) -> int:
