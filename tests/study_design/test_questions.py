@@ -77,4 +77,5 @@ def test_any_text_can_be_stored_or_is_refused_with_its_length(text: str) -> None
         return
     answer = read_answer(question, text)
     assert answer is None or (isinstance(answer, str) and "\x00" not in answer)
-    assert answer != "" and str(answer).encode("utf-8")
+    assert answer != ""
+    assert str(answer).encode("utf-8")
