@@ -14,7 +14,7 @@ from renderer.camera import CameraUniforms, View, camera_radius_mm, views
 from renderer.clip import ClipSpec
 from renderer.crowd.cube import CrowdCube
 from renderer.eye.eyes import Eyes
-from renderer.picture import SAMPLES, Picture, Pixels
+from renderer.picture import SAMPLES, Picture, Pixels, Radiance
 from renderer.scene import Scene, build_scene, scene_key
 
 
@@ -59,6 +59,21 @@ class FrameRenderer:
         self, azimuth_deg: float, *, time_s: float = 0.0, elevation_deg: float = 0.0
     ) -> Frame:
         """Render one frame from a camera azimuth at a scene time."""
+        visible = self._draw(azimuth_deg, time_s, elevation_deg)
+        return Frame(self._picture.finish(), visible)
+
+    def render_radiance(
+        self, azimuth_deg: float, *, time_s: float = 0.0, elevation_deg: float = 0.0
+    ) -> Radiance:
+        """Render one frame as linear scene-referred radiance, (height, width, 3) float32 Rec. 709.
+
+        What the camera receives: no exposure, no tone curve, no bloom. First row on top.
+        """
+        self._draw(azimuth_deg, time_s, elevation_deg)
+        return self._picture.radiance()
+
+    def _draw(self, azimuth_deg: float, time_s: float, elevation_deg: float) -> tuple[int, int]:
+        """Draw every view and return each eye's visible pixels."""
         if self._crowd_cube:
             self._crowd_cube.render(time_s)
         self._picture.begin()
@@ -67,7 +82,7 @@ class FrameRenderer:
             self._picture.use_rectangle(view.rectangle)
             for eye, pixels in self._draw_view(view, time_s).items():
                 visible[eye] = pixels
-        return Frame(self._picture.finish(), (visible[0], visible[1]))
+        return visible[0], visible[1]
 
     def render_number(self, frame: int) -> Frame:
         """Render one frame of the clip by its number (0-based)."""

@@ -14,6 +14,7 @@ SAMPLES: Final = 4  # llvmpipe's maximum
 EXPOSURE: Final = 0.8  # one fixed exposure for every clip: no auto-exposure, fair pairs
 
 Pixels = npt.NDArray[np.uint8]
+Radiance = npt.NDArray[np.float32]
 
 
 class Picture:
@@ -25,6 +26,7 @@ class Picture:
         self._radiance = gl.texture(size, 4, samples=SAMPLES, dtype="f2")
         depth = gl.depth_texture(size, samples=SAMPLES)
         self.target = gl.framebuffer([self._radiance], depth)
+        self._mean = gl.framebuffer([gl.texture(size, 4, dtype="f2")])
         self._display = gl.framebuffer([gl.texture(size, 4)])
         self._resolve = build_program(gl, "screen.vert", fragment="resolve.frag")
         self._screen = gl.vertex_array(self._resolve.gl_program, [])
@@ -42,6 +44,15 @@ class Picture:
         self.target.use()
         self.target.viewport = rectangle
         self.target.scissor = rectangle
+
+    def radiance(self) -> Radiance:
+        """Return the linear radiance, (height, width, 3) float32 Rec. 709, first row on top.
+
+        A pixel is the plain mean of its samples: no exposure, no tone curve, no bloom.
+        """
+        self.gl.copy_framebuffer(self._mean, self.target)
+        values = np.frombuffer(self._mean.read(components=3, dtype="f4", alignment=1), np.float32)
+        return values.reshape(self.size[1], self.size[0], 3)[::-1].copy()
 
     def finish(self) -> Pixels:
         """Tone map and return the frame, (height, width, 3) uint8 sRGB, first row on top."""
