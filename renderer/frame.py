@@ -53,7 +53,8 @@ class FrameRenderer:
             static_cube=scene.surroundings.cube,
             crowd_cube=self._crowd_cube.texture if self._crowd_cube else None,
         )
-        self._picture = Picture(gl, (spec.width, spec.height))
+        in_picture = len(views(spec, 0.0))
+        self._picture = Picture(gl, (spec.width, spec.height), views=in_picture)
 
     def render(
         self, azimuth_deg: float, *, time_s: float = 0.0, elevation_deg: float = 0.0

@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.bloom import SHARE, Bloom
 from renderer.program import build_program
 
 SAMPLES: Final = 4  # llvmpipe's maximum
@@ -18,9 +19,12 @@ Radiance = npt.NDArray[np.float32]
 
 
 class Picture:
-    """Draw between ``begin`` and ``finish``; ``finish`` returns the frame."""
+    """Draw between ``begin`` and ``finish``; ``finish`` returns the frame.
 
-    def __init__(self, gl: moderngl.Context, size: tuple[int, int]) -> None:
+    ``views`` of the same width stand side by side: none shines into the next.
+    """
+
+    def __init__(self, gl: moderngl.Context, size: tuple[int, int], *, views: int = 1) -> None:
         self.gl = gl
         self.size = size
         self._radiance = gl.texture(size, 4, samples=SAMPLES, dtype="f2")
@@ -28,6 +32,7 @@ class Picture:
         self.target = gl.framebuffer([self._radiance], depth)
         self._mean = gl.framebuffer([gl.texture(size, 4, dtype="f2")])
         self._display = gl.framebuffer([gl.texture(size, 4)])
+        self._bloom = Bloom(gl, size, views=views)
         self._resolve = build_program(gl, "screen.vert", fragment="resolve.frag")
         self._screen = gl.vertex_array(self._resolve.gl_program, [])
 
@@ -57,9 +62,14 @@ class Picture:
     def finish(self) -> Pixels:
         """Tone map and return the frame, (height, width, 3) uint8 sRGB, first row on top."""
         self.target.scissor = (0, 0, *self.size)
+        bloom = self._bloom.blurred(self._radiance)
         self._display.use()
-        self.gl.enable_only(moderngl.NOTHING)
-        self._resolve.set(u_radiance=self._radiance, u_exposure=EXPOSURE, u_height=self.size[1])
+        self._resolve.set(
+            u_radiance=self._radiance,
+            u_bloom=bloom,
+            u_bloom_share=SHARE,
+            u_exposure=EXPOSURE,
+        )
         self._screen.render(moderngl.TRIANGLES, vertices=3)
         pixels = np.frombuffer(self._display.read(components=3, alignment=1), np.uint8)
         return pixels.reshape(self.size[1], self.size[0], 3)

@@ -1,9 +1,10 @@
 // Provides: the last pass. Scene-referred linear radiance (4 samples per pixel) becomes sRGB in
-// 8 bits: exposure, one fixed tone curve per sample, average, dither. The first row is the top one.
+// 8 bits: samples averaged, bloom, exposure, one fixed tone curve, dither. The first row is the top one.
 
 uniform sampler2DMS u_radiance;
+uniform sampler2D u_bloom;     // the same radiance, blurred
+uniform float u_bloom_share;
 uniform float u_exposure;
-uniform int u_height;
 
 out vec4 o_colour;
 
@@ -40,9 +41,11 @@ float dither(ivec2 p) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    ivec2 at = ivec2(p.x, u_height - 1 - p.y);
+    ivec2 size = textureSize(u_radiance);
+    ivec2 at = ivec2(p.x, size.y - 1 - p.y);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 4; ++i) sum += weighted(texelFetch(u_radiance, at, i).rgb * u_exposure);
-    vec3 shown = tone_curve(sum.rgb / sum.a);
+    vec3 bloom = textureLod(u_bloom, (vec2(at) + 0.5) / vec2(size), 0.0).rgb * u_exposure;
+    vec3 shown = tone_curve(mix(sum.rgb / sum.a, bloom, u_bloom_share));
     o_colour = vec4(encode_srgb(shown) + dither(p) / 255.0, 1.0);
 }
