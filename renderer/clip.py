@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Final
 
@@ -17,9 +18,11 @@ MOTIONS: Final = ("orbit",)
 DIRECTIONS: Final = ("rightward", "leftward")
 PRESETS: Final = ("thesis", "calibrated")
 IRIS_COLOURS: Final = ("blue", "grey", "green", "hazel", "amber", "brown", "dark-brown")
-ENVIRONMENTS: Final = ("park",)
+ENVIRONMENTS: Final = ("park", "image")
 CROWDS: Final = (0, 5)
 CAUSTIC_PATTERNS: Final = ("computed", "painted")
+# Where files lie: the contents' hash beside each path decides what the frames are.
+PATHS: Final = ("environment_file",)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +36,11 @@ class ClipSpec:
     lids are closed, 0 open to 1 shut. ``subsurface_samples`` and ``caustic_pattern`` take the
     thesis's own forms of two effects, for comparison: 0 integrates the layers our way, 2 to 200 is
     its left-endpoint sum with so many samples; "painted" is its artist's caustic map.
+
+    ``environment`` "image" is a lat-long HDR picture: ``environment_file`` its path,
+    ``environment_sha256`` its contents, ``environment_turn_deg`` turns it to the viewer's right,
+    ``environment_exposure_ev`` brightens it in stops. It brings its own sun: the sun's angles
+    then decide nothing. The clip's name follows from the contents, never from the path.
     """
 
     left: Detail
@@ -54,6 +62,10 @@ class ClipSpec:
     vergence_deg: float = 0.0
     blink: float = 0.0
     environment: str = "park"
+    environment_file: str = ""
+    environment_sha256: str = ""
+    environment_turn_deg: float = 0.0
+    environment_exposure_ev: float = 0.0
     sun_azimuth_deg: float = -15.0
     sun_elevation_deg: float = 42.0
     crowd: int = 5
@@ -87,6 +99,8 @@ class ClipSpec:
             "gaze_pitch_deg": (-35.0, 25.0),
             "vergence_deg": (0.0, 20.0),
             "blink": (0.0, 1.0),
+            "environment_turn_deg": (-180.0, 180.0),
+            "environment_exposure_ev": (-10.0, 10.0),
             "sun_azimuth_deg": (-180.0, 180.0),
             "sun_elevation_deg": (0.0, 90.0),
         }
@@ -101,6 +115,7 @@ class ClipSpec:
             for name, (low, high) in ranges.items()
             if not low <= getattr(self, name) <= high
         ]
+        faults += self._environment_faults()
         if self.subsurface_samples != 0 and not 2 <= self.subsurface_samples <= 200:
             faults.append(
                 f"subsurface_samples: {self.subsurface_samples} is neither 0 nor within 2 to 200"
@@ -110,6 +125,24 @@ class ClipSpec:
             for name in ("width", "height")
             if getattr(self, name) % 2
         ]
+        return faults
+
+    def _environment_faults(self) -> list[str]:
+        given = {
+            "environment_file": self.environment_file,
+            "environment_sha256": self.environment_sha256,
+        }
+        if self.environment != "image":
+            return [
+                f'{name}: only an environment "image" has one; leave it empty'
+                for name, value in given.items()
+                if value
+            ]
+        faults = []
+        if not self.environment_file:
+            faults.append('environment_file: empty; an environment "image" needs a picture')
+        if not re.fullmatch("[0-9a-f]{64}", self.environment_sha256):
+            faults.append("environment_sha256: needs the picture's SHA-256, 64 hexadecimal digits")
         return faults
 
     @property
@@ -149,6 +182,7 @@ class ClipSpec:
 
     @property
     def clip_id(self) -> str:
-        """The clip's name: 20 hexadecimal digits of SHA-256 over everything in the spec."""
-        text = json.dumps(self.to_dict(), sort_keys=True, separators=(",", ":"))
+        """The clip's name: 20 hexadecimal digits of SHA-256 over everything but paths."""
+        values = {name: value for name, value in self.to_dict().items() if name not in PATHS}
+        text = json.dumps(values, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()[:20]

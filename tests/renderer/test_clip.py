@@ -30,6 +30,29 @@ def test_a_spec_survives_the_way_through_json() -> None:
     assert ClipSpec.from_dict(spec.to_dict()) == spec
 
 
+def test_an_image_is_named_by_its_contents_wherever_it_lies() -> None:
+    def lit_by(path: str, digit: str) -> ClipSpec:
+        return ClipSpec(
+            left=LOW,
+            right=ULTRA,
+            environment="image",
+            environment_file=path,
+            environment_sha256=digit * 64,
+        )
+
+    here, there, other = lit_by("/a/x.exr", "0"), lit_by("/b/y.exr", "0"), lit_by("/a/x.exr", "1")
+    assert here.clip_id == there.clip_id != other.clip_id
+    assert ClipSpec.from_dict(here.to_dict()) == here
+
+
+def test_an_image_needs_path_and_hash_and_the_park_has_neither() -> None:
+    with pytest.raises(ValueError, match="environment_file: empty; .* needs a picture") as caught:
+        ClipSpec(left=LOW, right=LOW, environment="image", environment_sha256="abc")
+    assert "environment_sha256: needs the picture's SHA-256" in str(caught.value)
+    with pytest.raises(ValueError, match='environment_file: only an environment "image" has one'):
+        ClipSpec(left=LOW, right=LOW, environment_file="x.exr")
+
+
 def test_the_orbit_is_linear_symmetric_and_turns_with_its_direction() -> None:
     rightward = ClipSpec(left=LOW, right=LOW)
     leftward = ClipSpec(left=LOW, right=LOW, orbit_direction="leftward")
