@@ -36,7 +36,7 @@ def test_the_first_row_is_the_top_and_equal_frames_are_equal_bytes(gl: moderngl.
         frames.append(picture.finish())
     assert frames[0].shape == (32, 64, 3)
     assert frames[0][:16].min() > 190
-    assert frames[0][17:].max() <= 30  # its bloom
+    assert frames[0][17:].max() <= 40  # its bloom
     assert frames[0][-1].max() < frames[0][16].min()
     assert frames[0].tobytes() == frames[1].tobytes()
 
