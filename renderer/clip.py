@@ -22,7 +22,7 @@ ENVIRONMENTS: Final = ("park", "image")
 CROWDS: Final = (0, 5)
 CAUSTIC_PATTERNS: Final = ("computed", "painted")
 # Where files lie: the contents' hash beside each path decides what the frames are.
-PATHS: Final = ("environment_file",)
+PATHS: Final = ("environment_file", "iris_file")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,6 +41,9 @@ class ClipSpec:
     ``environment_sha256`` its contents, ``environment_turn_deg`` turns it to the viewer's right,
     ``environment_exposure_ev`` brightens it in stops. It brings its own sun: the sun's angles
     then decide nothing. The clip's name follows from the contents, never from the path.
+
+    ``iris_file`` is an iris taken from a photograph (``renderer.iris.file``), ``iris_sha256`` its
+    contents. ``iris_colour`` then decides nothing and ``iris_seed`` the sclera alone.
     """
 
     left: Detail
@@ -56,6 +59,8 @@ class ClipSpec:
     preset: str = "thesis"
     iris_seed: int = 1
     iris_colour: str = "blue"
+    iris_file: str = ""
+    iris_sha256: str = ""
     pupil_mm: float = 4.0
     gaze_yaw_deg: float = 0.0
     gaze_pitch_deg: float = 0.0
@@ -116,6 +121,11 @@ class ClipSpec:
             if not low <= getattr(self, name) <= high
         ]
         faults += self._environment_faults()
+        if bool(self.iris_file) != bool(re.fullmatch("[0-9a-f]{64}", self.iris_sha256)):
+            faults.append(
+                "iris_sha256: an iris_file needs its SHA-256, 64 hexadecimal digits; "
+                "leave both empty for the iris of iris_seed and iris_colour"
+            )
         if self.subsurface_samples != 0 and not 2 <= self.subsurface_samples <= 200:
             faults.append(
                 f"subsurface_samples: {self.subsurface_samples} is neither 0 nor within 2 to 200"
