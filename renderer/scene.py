@@ -31,6 +31,9 @@ def scene_key(spec: ClipSpec) -> SceneKey:
     """Return what a scene depends on."""
     return (
         spec.environment,
+        spec.environment_sha256,
+        spec.environment_turn_deg,
+        spec.environment_exposure_ev,
         spec.sun_azimuth_deg,
         spec.sun_elevation_deg,
         spec.gaze_yaw_deg,

@@ -1,7 +1,7 @@
-"""The surroundings: a park under a clear sky, as light, as reflection and as background.
+"""The surroundings of a clip, the park or a picture: as light, as reflection and as background.
 
-``shaders/environment.glsl`` is the one truth; everything here is drawn from it once per scene:
-static cube maps for the cornea, ambient light for all, and a panorama out of focus as background.
+``environment_radiance`` in the environment's shader is the one truth; everything here is drawn from
+it once per scene: static cube maps for the cornea and a panorama out of focus as background.
 """
 
 from __future__ import annotations
@@ -9,23 +9,18 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.cache import cached_arrays
 from renderer.clip import ClipSpec
-from renderer.light import Sky, Vector
-from renderer.park.cube_maps import FACE_AXES, CubeTarget, face_directions, read_face
-from renderer.park.sky import clear_sky
-from renderer.park.skyline import park_skyline
+from renderer.light import Sky
+from renderer.park.cube_maps import FACE_AXES, CubeTarget
+from renderer.park.environments import Environment, make_environment
 from renderer.program import build_program
-from renderer.spherical_harmonics import sh_basis
-from renderer.textures.tiling import tiling_noise
 
-AMBIENT_PX: Final = 64
 SMALLEST_LEVEL_PX: Final = 32
 BACKGROUND_CUBE_PX: Final = 1024
 
@@ -59,10 +54,9 @@ class Surroundings:
 
     def __init__(self, gl: moderngl.Context, spec: ClipSpec) -> None:
         self.gl = gl
-        self._clear = clear_sky(spec.sun_azimuth_deg, spec.sun_elevation_deg)
-        self._program = build_program(gl, "screen.vert", fragment="environment_face.frag")
+        self._environment: Environment = make_environment(gl, spec)
+        self._program = build_program(gl, "screen.vert", fragment=self._environment.face_shader)
         self._screen = gl.vertex_array(self._program.gl_program, [])
-        self._maps = _environment_maps(gl)
         self._cubes: dict[int, moderngl.TextureCube] = {}
         self._panoramas: dict[Defocus, moderngl.Texture] = {}
         self._background = build_program(gl, "direction.vert", fragment="background.frag")
@@ -71,13 +65,7 @@ class Surroundings:
     @functools.cached_property
     def sky(self) -> Sky:
         """The light: the sun, and the surroundings' ambient light without it."""
-        cube = self.cube(AMBIENT_PX)
-        faces = np.stack([read_face(cube, face)[..., :3] for face in range(6)])
-        return Sky(
-            sun_direction=self._clear.sun_direction,
-            sun_irradiance=self._clear.sun_irradiance,
-            ambient_sh=project_to_sh(faces),
-        )
+        return self._environment.sky(self.cube)
 
     def cube(self, size: int) -> moderngl.TextureCube:
         """Return the surroundings as a static cube map of ``size`` pixels a face, with levels."""
@@ -101,17 +89,15 @@ class Surroundings:
         self._background_screen.render(moderngl.TRIANGLES, vertices=3)
         self.gl.depth_func = "<"
 
-    def uniforms(self, footprint_rad: float) -> dict[str, Any]:
-        """Return what ``shaders/environment.glsl`` needs, for texels of that angle."""
-        return {**self._clear.uniforms(), **self._maps, "u_footprint_rad": footprint_rad}
-
     def _draw_cube(self, size: int) -> moderngl.TextureCube:
         cube = CubeTarget(self.gl, size, levels=level_count(size))
         self.gl.enable_only(moderngl.NOTHING)
         for face in range(6):
             cube.attach(face)
             self._program.set(
-                u_face=FACE_AXES[face], u_face_size=(size, size), **self.uniforms(2.0 / size)
+                u_face=FACE_AXES[face],
+                u_face_size=(size, size),
+                **self._environment.uniforms(2.0 / size),
             )
             self._screen.render(moderngl.TRIANGLES, vertices=3)
         cube.build_levels()
@@ -145,8 +131,8 @@ class Surroundings:
             u_radius_rad=radius,
             u_points=defocus.points,
             u_lod=max(0.0, math.log2(spacing) + 0.5),
-            u_sun_towards=self._clear.sun_direction,
-            u_sun_radiance=np.minimum(self._clear.sun_irradiance / (np.pi * radius**2), 6.0e4),
+            u_sun_towards=self.sky.sun_direction,
+            u_sun_radiance=np.minimum(self.sky.sun_irradiance / (np.pi * radius**2), 6.0e4),
         )
         self.gl.vertex_array(program.gl_program, []).render(moderngl.TRIANGLES, vertices=3)
 
@@ -156,24 +142,6 @@ def level_count(size: int) -> int:
     return max(1, (size // SMALLEST_LEVEL_PX).bit_length())
 
 
-def project_to_sh(faces: npt.NDArray[np.floating]) -> Vector:
-    """Project cube faces (6, n, n, 3) on the first nine spherical harmonics, (9, 3).
-
-    Real orthonormal basis in the order of Ramamoorthi and Hanrahan 2001, eq. 3.
-    """
-    size = faces.shape[1]
-    total = np.zeros((9, 3))
-    for face in range(6):
-        d = face_directions(size, face)
-        # Solid angle of a texel: 4 / n^2 / (1 + s^2 + t^2)^1.5, and 1 / that root is the cosine.
-        cosine = np.abs(d @ FACE_AXES[face][:, 2])
-        weight = 4.0 / size**2 * cosine**3
-        total += np.einsum(
-            "ijk,ijc->kc", sh_basis(d) * weight[..., None], faces[face].astype(float)
-        )
-    return np.asarray(total)
-
-
 def _distance_mm(view_matrix: npt.NDArray[np.floating]) -> float:
     matrix = np.asarray(view_matrix, dtype=float)
     return float(np.linalg.norm(matrix[:3, :3].T @ matrix[:3, 3]))
@@ -181,24 +149,3 @@ def _distance_mm(view_matrix: npt.NDArray[np.floating]) -> float:
 
 def _defocus(distance_mm: float) -> Defocus:
     return next(step for step in DEFOCUS if distance_mm <= step.farthest_mm)
-
-
-def _environment_maps(gl: moderngl.Context) -> dict[str, moderngl.Texture]:
-    skyline = cached_arrays("park skyline", lambda: dict(park_skyline()))
-    noise = cached_arrays("tiling noise", lambda: {"noise": tiling_noise()})["noise"]
-    return {
-        "u_noise": _texture(gl, noise, wraps_y=True),
-        "u_skyline_albedo": _texture(gl, skyline["albedo"], wraps_y=False),
-        "u_skyline_shape": _texture(gl, skyline["shape"], wraps_y=False),
-    }
-
-
-def _texture(
-    gl: moderngl.Context, pixels: npt.NDArray[np.generic], *, wraps_y: bool
-) -> moderngl.Texture:
-    height, width, channels = pixels.shape
-    texture = gl.texture((width, height), channels, np.ascontiguousarray(pixels).tobytes())
-    texture.build_mipmaps()
-    texture.filter = (moderngl.LINEAR_MIPMAP_NEAREST, moderngl.LINEAR)
-    texture.repeat_y = wraps_y
-    return texture

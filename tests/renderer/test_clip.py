@@ -46,7 +46,7 @@ def test_an_image_is_named_by_its_contents_wherever_it_lies() -> None:
 
 
 def test_an_image_needs_path_and_hash_and_the_park_has_neither() -> None:
-    with pytest.raises(ValueError, match="environment_file: empty; .* needs a picture") as caught:
+    with pytest.raises(ValueError, match=r"environment_file: empty; .* needs a picture") as caught:
         ClipSpec(left=LOW, right=LOW, environment="image", environment_sha256="abc")
     assert "environment_sha256: needs the picture's SHA-256" in str(caught.value)
     with pytest.raises(ValueError, match='environment_file: only an environment "image" has one'):

@@ -1,0 +1,1 @@
+"""Pictures, meshes and scenes in open formats, for other programs and from them."""
