@@ -20,9 +20,9 @@ class Studio:
         self.gl_version = identity.version
         self._scene: Scene | None = None
 
-    def renderer(self, spec: ClipSpec) -> FrameRenderer:
+    def renderer(self, spec: ClipSpec, *, wireframe: bool = False) -> FrameRenderer:
         """Return a renderer of one clip's frames, in the last clip's scene where it fits."""
-        renderer = FrameRenderer(self.gl, spec, scene=self._scene)
+        renderer = FrameRenderer(self.gl, spec, scene=self._scene, wireframe=wireframe)
         self._scene = renderer.scene
         return renderer
 

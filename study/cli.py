@@ -23,6 +23,7 @@ COMMANDS: Final = (
     "worker",
     "still",
     "bench",
+    "gallery",
     "serve",
     "simulate",
     "export",

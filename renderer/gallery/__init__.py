@@ -1,0 +1,1 @@
+"""The gallery and the contact sheets: strips of captioned stills that show what each part does."""

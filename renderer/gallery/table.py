@@ -1,0 +1,17 @@
+"""All strips of the gallery in the order of docs/gallery.md."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from renderer.gallery.certificate import certificate_strips
+from renderer.gallery.scenes import SCENES
+from renderer.gallery.strips import STRIPS, Strip
+
+
+def gallery_strips(certificate: Path) -> tuple[Strip, ...]:
+    """Return the strips; ``certificate`` is a folder of ``ocularist certify``, which may be empty.
+
+    The strips that share a scene stand together.
+    """
+    return (*STRIPS, *SCENES, *certificate_strips(certificate))
