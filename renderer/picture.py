@@ -55,6 +55,7 @@ class Picture:
 
         A pixel is the plain mean of its samples: no exposure, no tone curve, no bloom.
         """
+        self.target.scissor = (0, 0, *self.size)  # blits are cut by it too
         self.gl.copy_framebuffer(self._mean, self.target)
         values = np.frombuffer(self._mean.read(components=3, dtype="f4", alignment=1), np.float32)
         return values.reshape(self.size[1], self.size[0], 3)[::-1].copy()

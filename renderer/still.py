@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
+from PIL import Image
+
 from renderer.clip import ClipSpec
-from renderer.context import create_context
+from renderer.context import create_context, identify
+from renderer.exchange.exr import Attribute, write_exr
 from renderer.frame import FrameRenderer
-from renderer.picture import Pixels
+from renderer.picture import EXPOSURE, Pixels
+from renderer.sources import code_version
 
 
 def render_still(
@@ -26,3 +33,61 @@ def render_still(
         return renderer.render(azimuth_deg, time_s=time_s, elevation_deg=elevation_deg).pixels
     finally:
         gl.release()
+
+
+def write_still(
+    path: Path,
+    spec: ClipSpec,
+    *,
+    azimuth_deg: float = 0.0,
+    elevation_deg: float = 0.0,
+    time_s: float = 0.0,
+    wireframe: bool = False,
+) -> None:
+    """Render one frame into a file; see ``write_frame``."""
+    gl = create_context()
+    try:
+        write_frame(
+            path,
+            FrameRenderer(gl, spec, wireframe=wireframe),
+            azimuth_deg=azimuth_deg,
+            elevation_deg=elevation_deg,
+            time_s=time_s,
+        )
+    finally:
+        gl.release()
+
+
+def write_frame(
+    path: Path,
+    renderer: FrameRenderer,
+    *,
+    azimuth_deg: float = 0.0,
+    elevation_deg: float = 0.0,
+    time_s: float = 0.0,
+) -> None:
+    """Render one frame into a file: ``.exr`` gets linear radiance, any other name the picture.
+
+    The radiance is scene-referred Rec. 709, before exposure, bloom and tone curve; the file's
+    attributes say what it shows and what drew it.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    viewpoint = {"elevation_deg": elevation_deg, "time_s": time_s}
+    if path.suffix != ".exr":
+        Image.fromarray(renderer.render(azimuth_deg, **viewpoint).pixels).save(path)
+        return
+    identity = identify(renderer.gl)
+    attributes: dict[str, Attribute] = {
+        "software": "Ocularist",
+        "comments": "linear scene-referred radiance; a white Lambertian surface facing the sun "
+        "leaves with about 1",
+        "spec": json.dumps(renderer.spec.to_dict(), sort_keys=True),
+        "clip_id": renderer.spec.clip_id,
+        "azimuth_deg": azimuth_deg,
+        **viewpoint,
+        "exposure": EXPOSURE,
+        "code_version": code_version(),
+        "gl_renderer": identity.renderer,
+        "gl_version": identity.version,
+    }
+    write_exr(path, renderer.render_radiance(azimuth_deg, **viewpoint), attributes=attributes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import re
 import socket
@@ -12,7 +13,7 @@ import pytest
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
 from study.cli import build_parser, main
-from study.commands.eye_options import spec_of
+from study.commands.eye_options import spec_of, viewpoint_of
 from study.commands.listening import address_of, check_port, welcome
 from study.commands.progress import time_left
 from study.commands.render import wanted
@@ -58,6 +59,34 @@ def test_a_still_takes_everything_that_a_clip_depends_on() -> None:
     assert (spec.iris_seed, spec.iris_colour) == (7, "brown")
     assert (spec.sun_azimuth_deg, spec.sun_elevation_deg) == (20, 60)
     assert (spec.crowd, spec.preset) == (0, "calibrated")
+
+
+def test_a_still_takes_its_surroundings_from_a_picture(tmp_path: Path) -> None:
+    picture = tmp_path / "lobby.exr"
+    picture.write_bytes(b"whatever")
+    spec = still(
+        *("--environment", str(picture), "--environment-turn", "30", "--environment-exposure", "-1")
+    )
+    assert spec.environment == "image"
+    assert spec.environment_file == str(picture)
+    assert spec.environment_sha256 == hashlib.sha256(b"whatever").hexdigest()
+    assert (spec.environment_turn_deg, spec.environment_exposure_ev) == (30.0, -1.0)
+
+
+def test_the_camera_stands_at_an_azimuth_or_where_a_frame_has_it() -> None:
+    options = build_parser().parse_args(["still", "--azimuth", "20", "--elevation", "5"])
+    assert viewpoint_of(options, still()) == {
+        "azimuth_deg": 20.0,
+        "elevation_deg": 5.0,
+        "time_s": 0.0,
+    }
+    first = build_parser().parse_args(["still", "--frame", "31"])
+    spec = still()
+    assert viewpoint_of(first, spec) == {
+        "azimuth_deg": spec.azimuth_deg(30),
+        "elevation_deg": 0.0,
+        "time_s": 1.0,
+    }
 
 
 @pytest.mark.parametrize(

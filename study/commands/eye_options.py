@@ -1,13 +1,15 @@
-"""What the options about eyes come to: levels, iris, a clip's spec."""
+"""What the options of one picture come to: a clip's spec, and the camera's place in it."""
 
 from __future__ import annotations
 
 import argparse
+import hashlib
 import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
+from study.commands.errors import CommandError
 from study.commands.options import reading
 
 if TYPE_CHECKING:
@@ -27,6 +29,7 @@ def spec_of(options: argparse.Namespace) -> ClipSpec:
         "crowd": options.crowd,
         "preset": options.preset,
     }
+    optional |= _surroundings(options)
     if options.sun:
         optional["sun_azimuth_deg"], optional["sun_elevation_deg"] = options.sun
     spec = ClipSpec(
@@ -44,6 +47,46 @@ def spec_of(options: argparse.Namespace) -> ClipSpec:
     )
     given = {name: value for name, value in optional.items() if value is not None}
     return replace(spec, **options.iris, **given)
+
+
+def viewpoint_of(options: argparse.Namespace, spec: ClipSpec) -> dict[str, float]:
+    """Return the camera's azimuth and elevation in degrees and the scene's time in s."""
+    if options.frame is None:
+        return {
+            "azimuth_deg": options.azimuth,
+            "elevation_deg": options.elevation,
+            "time_s": 0.0,
+        }
+    frame = options.frame - 1
+    return {
+        "azimuth_deg": spec.azimuth_deg(frame),
+        "elevation_deg": options.elevation,
+        "time_s": spec.time_s(frame),
+    }
+
+
+def _surroundings(options: argparse.Namespace) -> dict[str, Any]:
+    """Return the spec's fields of a picture that surrounds the face."""
+    if options.environment is None:
+        for name in ("environment_turn", "environment_exposure"):
+            if getattr(options, name) is not None:
+                option = name.replace("_", "-")
+                raise CommandError(f"--{option}: only a picture has one; give --environment FILE")
+        return {}
+    if options.sun:
+        raise CommandError(
+            f"--sun: {options.environment} brings its own sun; turn it with --environment-turn"
+        )
+    path = options.environment.absolute()
+    with path.open("rb") as file:
+        contents = hashlib.file_digest(file, "sha256").hexdigest()
+    return {
+        "environment": "image",
+        "environment_file": str(path),
+        "environment_sha256": contents,
+        "environment_turn_deg": options.environment_turn,
+        "environment_exposure_ev": options.environment_exposure,
+    }
 
 
 def detail_of(
