@@ -14,6 +14,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.park.cube_lookup import look_up
+from renderer.spherical_harmonics import sh_basis
+
 Vector = npt.NDArray[np.float64]
 
 
@@ -24,11 +27,20 @@ class Sky:
     ``sun_direction`` is a unit vector towards the sun in world space; ``sun_irradiance`` (3,) what
     falls on a surface that faces it; ``ambient_sh`` (9, 3) the spherical-harmonic coefficients of
     the surroundings' radiance without the sun (real, orthonormal, Ramamoorthi and Hanrahan 2001).
+    ``faces`` (6, n, n, 3) are the same surroundings as a small cube map, which the cornea gathers
+    light from; without them the harmonics stand in.
     """
 
     sun_direction: Vector
     sun_irradiance: Vector
     ambient_sh: Vector
+    faces: Vector | None = None
+
+    def radiance(self, directions: Vector) -> Vector:
+        """Return the surroundings' radiance without the sun towards unit directions (n, 3)."""
+        if self.faces is not None:
+            return look_up(self.faces, directions)
+        return np.maximum(sh_basis(directions) @ self.ambient_sh, 0.0)
 
 
 @dataclass

@@ -15,6 +15,9 @@ CORNEA_ASPHERICITY: Final = 0.75  # p = 1 + Q; adults 0.5 to 1.0
 
 GLOBE_RADIUS_MM: Final = 11.75  # scleral sphere: gives an axial length of 24.4 mm
 LIMBUS_RADIUS_MM: Final = 5.85  # half of the visible iris diameter, 11.71 +- 0.42 mm
+LIMBUS_INSET_MM: Final = 0.12  # the sclera overlaps the cornea by about a millimetre:
+LIMBUS_WIDTH_MM: Final = 0.15  # a sigmoid of this width
+CLEAR_REACH_MM: Final = 6.6  # beyond this radius less than 0.5 % of the light passes
 LIMBUS_HEIGHT_RATIO: Final = 0.95  # the sclera reaches further in above and below: 11.1 mm high
 
 IRIS_DEPTH_MM: Final = 3.3  # iris plane behind the apex; adults 2.2 to 3.7
@@ -51,6 +54,8 @@ def shader_constants() -> dict[str, int | float]:
         "GLOBE_RADIUS_MM",
         "LIMBUS_RADIUS_MM",
         "LIMBUS_HEIGHT_RATIO",
+        "LIMBUS_INSET_MM",
+        "LIMBUS_WIDTH_MM",
         "IRIS_MAP_RADIUS_MM",
         "MAP_PUPIL_RADIUS_MM",
         "JOIN_HEIGHT_MM",
@@ -58,5 +63,6 @@ def shader_constants() -> dict[str, int | float]:
         "PROFILE_END_MM",
         "APEX_MM",
         "IRIS_Z_MM",
+        "SUN_ANGULAR_RADIUS_DEG",
     )
     return {name: float(globals()[name]) for name in names}

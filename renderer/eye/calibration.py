@@ -68,7 +68,7 @@ def _diffuse_picture(
     camera = centre + CAMERA_MM * gaze
     half_angle = math.degrees(math.atan(MAP_EDGE_MM / (CAMERA_MM - IRIS_Z_MM)))
     projection = perspective(2 * half_angle, 1.0, 0.5 * CAMERA_MM, 2 * CAMERA_MM)
-    chamber = chamber_irradiance(_UNIFORM_SH, np.eye(3), rims=None, size_px=16)
+    chamber = chamber_irradiance(np.ones_like, np.eye(3), rims=None, size_px=16)
     target = gl.framebuffer([gl.texture((MEASURE_PX, MEASURE_PX), 4, dtype="f4")])
     black = gl.texture_cube((1, 1), 4, np.zeros((6, 4), np.float16).tobytes(), dtype="f2")
     # Held until drawn: a texture that nothing refers to is released.

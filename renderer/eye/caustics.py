@@ -9,6 +9,8 @@ from the same rays, so that shading and caustic agree (Francois et al. 2009 keep
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -16,14 +18,20 @@ import numpy.typing as npt
 from scipy import ndimage
 
 from renderer.eye.anatomy import (
-    APEX_MM,
+    CLEAR_REACH_MM,
     CORNEA_IOR,
     GLOBE_RADIUS_MM,
     IRIS_DEPTH_MM,
-    LIMBUS_RADIUS_MM,
     SUN_ANGULAR_RADIUS_DEG,
 )
-from renderer.eye.optics import conic_normal, corneal_sag, fresnel, refract, to_iris_plane
+from renderer.eye.optics import (
+    cornea_share,
+    fresnel,
+    refract,
+    surface_height,
+    surface_normal,
+    to_iris_plane,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -32,11 +40,29 @@ _RAYS_PER_TEXEL: Final = 3.0  # along each axis; the third-order kernel leaves 0
 _ROWS: Final = 256  # rows of rays at a time: bounds the memory
 
 
+@dataclass(frozen=True)
+class Front:
+    """A front surface as light meets it.
+
+    Height (...) over the distance from the axis, unit normals (..., 3) at points of it, and the
+    clear share (...) at points (..., 2): 1 cornea, 0 sclera.
+    """
+
+    height_mm: Callable[[Array], Array]
+    normal: Callable[[Array], Array]
+    clear: Callable[[Array], Array]
+
+
+# What the eye is drawn with: its limbus is soft and oval, cornea and sclera join smoothly.
+DRAWN: Final = Front(lambda r: surface_height(r)[0], surface_normal, cornea_share)
+
+
 def caustic_map(
     sun_eye: Array,
     size_px: int,
     *,
     light_radius_deg: float = SUN_ANGULAR_RADIUS_DEG,
+    front: Front = DRAWN,
 ) -> npt.NDArray[np.float32]:
     """Return the sun's light on the iris plane, (size_px, size_px, 3) float32.
 
@@ -45,7 +71,7 @@ def caustic_map(
     relative to that on a surface facing the sun; the cosine and the cornea's transmittance are
     contained. Row 0 lies at y = -MAP_EDGE_MM.
     """
-    flux, flux_x, flux_y = _splat(sun_eye, size_px)
+    flux, flux_x, flux_y = _splat(sun_eye, size_px, front=front)
     texel_mm = 2 * MAP_EDGE_MM / size_px
     blur_px = math.radians(light_radius_deg) * IRIS_DEPTH_MM / CORNEA_IOR / 2 / texel_mm
     flux, flux_x, flux_y = (
@@ -60,33 +86,39 @@ def caustic_map(
     return np.stack([direction_x, direction_y, flux / texel_mm**2], axis=-1).astype(np.float32)
 
 
-def entering_rays(sun_eye: Array, entry_mm: Array) -> tuple[Array, Array, Array]:
-    """Follow sunlight from points (..., 2) of the limbus disc to the iris plane.
+def entering_rays(
+    sun_eye: Array, entry_mm: Array, *, front: Front = DRAWN
+) -> tuple[Array, Array, Array]:
+    """Follow sunlight from points (..., 2) around the gaze axis to the iris plane.
 
     Returns where each ray lands (..., 2) in mm, its unit direction in the chamber (..., 3), and
-    its flux per area of the disc relative to the sun's irradiance (0 where the sun does not reach
-    the cornea).
+    its flux per area across the axis relative to the sun's irradiance (0 where the sun does not
+    reach the cornea).
     """
-    r2 = np.sum(entry_mm**2, axis=-1)
-    sag = corneal_sag(np.sqrt(r2))
-    points = np.concatenate([entry_mm, (APEX_MM - sag)[..., None]], axis=-1)
-    normal = conic_normal(points)
+    height = front.height_mm(np.hypot(entry_mm[..., 0], entry_mm[..., 1]))
+    points = np.concatenate([entry_mm, height[..., None]], axis=-1)
+    normal = front.normal(points)
     cosine = normal @ sun_eye
-    lit = (cosine > 0.0) & (r2 < LIMBUS_RADIUS_MM**2) & ~_behind_globe(points, sun_eye)
+    lit = (cosine > 0.0) & ~_behind_globe(points, sun_eye)
     inside = refract(np.broadcast_to(-sun_eye, normal.shape), normal, ior_ratio=1 / CORNEA_IOR)
     lit &= inside[..., 2] < -1e-3
-    area = 1.0 / normal[..., 2]  # of the surface per area of the disc
+    area = front.clear(entry_mm) / normal[..., 2]  # of the clear surface per area across the axis
     flux = np.where(lit, cosine * area * (1.0 - fresnel(cosine)), 0.0)
     inside = np.where(lit[..., None], inside, [0.0, 0.0, -1.0])
     return to_iris_plane(points, inside), inside, flux
 
 
-def lit_flux_mm2(sun_eye: Array, *, rays: int = 1024) -> float:
+def lit_flux_mm2(sun_eye: Array, *, rays: int = 1024, front: Front = DRAWN) -> float:
     """Return the flux through the cornea in mm^2 of a surface that faces the sun."""
-    step = 2 * LIMBUS_RADIUS_MM / rays
-    axis = (np.arange(rays) + 0.5) * step - LIMBUS_RADIUS_MM
-    entry = np.stack(np.meshgrid(axis, axis), axis=-1)
-    return float(entering_rays(sun_eye, entry)[2].sum() * step * step)
+    entry, cell_mm2 = _entry_lattice(rays)
+    return float(entering_rays(sun_eye, entry, front=front)[2].sum() * cell_mm2)
+
+
+def _entry_lattice(rays: int) -> tuple[Array, float]:
+    """Return points (rays, rays, 2) over all of the clear cornea, and the area of their cells."""
+    step = 2 * CLEAR_REACH_MM / rays
+    axis = (np.arange(rays) + 0.5) * step - CLEAR_REACH_MM
+    return np.stack(np.meshgrid(axis, axis), axis=-1), step * step
 
 
 def _behind_globe(points: Array, sun_eye: Array) -> npt.NDArray[np.bool_]:
@@ -101,19 +133,17 @@ def _axis_direction(sun_eye: Array) -> Array:
     return np.asarray(-sun_eye[:2] / CORNEA_IOR)
 
 
-def _splat(sun_eye: Array, size_px: int) -> tuple[Array, Array, Array]:
+def _splat(sun_eye: Array, size_px: int, *, front: Front) -> tuple[Array, Array, Array]:
     """Collect flux and flux-weighted x and y directions per texel, each (size_px, size_px)."""
-    rays = math.ceil(size_px * _RAYS_PER_TEXEL)
-    step = 2 * LIMBUS_RADIUS_MM / rays
-    axis = (np.arange(rays) + 0.5) * step - LIMBUS_RADIUS_MM
+    rays = math.ceil(size_px * _RAYS_PER_TEXEL * CLEAR_REACH_MM / MAP_EDGE_MM)
+    lattice, cell_mm2 = _entry_lattice(rays)
     layers = np.zeros((3, size_px * size_px))
     for first in range(0, rays, _ROWS):
-        rows = axis[first : first + _ROWS]
-        entry = np.stack(np.meshgrid(axis, rows), axis=-1).reshape(-1, 2)
-        entry = entry[np.sum(entry**2, axis=-1) < LIMBUS_RADIUS_MM**2]
-        landing, inside, flux = entering_rays(sun_eye, entry)
+        entry = lattice[first : first + _ROWS].reshape(-1, 2)
+        entry = entry[np.sum(entry**2, axis=-1) < CLEAR_REACH_MM**2]
+        landing, inside, flux = entering_rays(sun_eye, entry, front=front)
         keep = flux > 0.0
-        weights = flux[keep] * step * step
+        weights = flux[keep] * cell_mm2
         texel = (landing[keep] + MAP_EDGE_MM) * (size_px / (2 * MAP_EDGE_MM)) - 0.5
         _add(layers, texel, np.stack([weights, *(weights * inside[keep, :2].T)]), size_px)
     flux, flux_x, flux_y = layers.reshape(3, size_px, size_px)

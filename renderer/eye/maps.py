@@ -75,7 +75,7 @@ def sunlight_values(
     caustic = cached_array(
         f"caustic {size} {np.round(sun_eye, 9).tolist()}", lambda: caustic_map(sun_eye, size)
     )
-    chamber = chamber_irradiance(sky.ambient_sh, eye_to_world, rims=rims, size_px=CHAMBER_PX)
+    chamber = chamber_irradiance(sky.radiance, eye_to_world, rims=rims, size_px=CHAMBER_PX)
     return {
         "u_caustic_map": _float_texture(gl, _with_alpha(caustic)),
         "u_chamber_map": _float_texture(gl, _with_alpha(chamber)),

@@ -7,11 +7,14 @@ and ``shaders/refraction.glsl`` say the same to the GPU; tests compare the two.
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 import numpy.typing as npt
 
 from renderer.eye.anatomy import (
     APEX_MM,
+    CLEAR_REACH_MM,
     CORNEA_ASPHERICITY,
     CORNEA_IOR,
     CORNEA_RADIUS_MM,
@@ -19,11 +22,16 @@ from renderer.eye.anatomy import (
     IRIS_Z_MM,
     JOIN_HEIGHT_MM,
     JOIN_REACH_MM,
+    LIMBUS_HEIGHT_RATIO,
+    LIMBUS_INSET_MM,
     LIMBUS_RADIUS_MM,
+    LIMBUS_WIDTH_MM,
     PROFILE_END_MM,
 )
 
 Array = npt.NDArray[np.float64]
+
+_JOIN_STEPS: Final = 3  # Newton's, from the conic to its join with the sclera
 
 
 def corneal_sag(r_mm: Array | float) -> Array:
@@ -69,6 +77,16 @@ def surface_normal(p_eye: Array) -> Array:
     return unit(np.where(is_front[..., None], front, p))
 
 
+def cornea_share(points: Array) -> Array:
+    """Return the clear share, 1 cornea to 0 sclera, over points (..., 2 or more) of the front.
+
+    What veils the view of the iris also veils the light on its way in.
+    """
+    r = np.hypot(points[..., 0], points[..., 1] / LIMBUS_HEIGHT_RATIO)
+    edge = LIMBUS_RADIUS_MM - LIMBUS_INSET_MM
+    return np.asarray(1.0 / (1.0 + np.exp((r - edge) / LIMBUS_WIDTH_MM)))
+
+
 def unit(v: Array) -> Array:
     """Return vectors (..., 3) scaled to length 1."""
     return np.asarray(v / np.linalg.norm(v, axis=-1, keepdims=True))
@@ -94,16 +112,15 @@ def fresnel(cosine: Array | float, *, ior: float = CORNEA_IOR) -> Array:
     c = np.clip(np.asarray(cosine, dtype=np.float64), 0.0, 1.0)
     g2 = ior**2 + c * c - 1.0
     g = np.sqrt(np.maximum(g2, 0.0))
-    ratio = (g - c) / (g + c)
+    ratio = (g - c) / np.maximum(g + c, 1e-12)
     second = (c * (g + c) - 1.0) / (c * (g - c) + 1.0)
     return np.where(g2 > 0.0, 0.5 * ratio**2 * (1.0 + second**2), 1.0)
 
 
 def cornea_from_inside(origin: Array, direction: Array) -> Array:
-    """Return where rays from the chamber meet Baker's cornea, (..., 3); NaN beyond the limbus.
+    """Return where rays from the chamber meet the front surface, (..., 3); NaN beyond the limbus.
 
-    Exact intersection with the conic. The join with the sclera, which differs from it by less than
-    0.08 mm under the opaque limbus, is left out.
+    Exact intersection with Baker's conic, then Newton's steps to its smooth join with the sclera.
     """
     depth = APEX_MM - origin[..., 2]
     dx, dy, dz = direction[..., 0], direction[..., 1], -direction[..., 2]
@@ -113,8 +130,15 @@ def cornea_from_inside(origin: Array, direction: Array) -> Array:
     b = p * depth * dz - R * dz + ox * dx + oy * dy
     c = p * depth * depth - 2 * R * depth + ox * ox + oy * oy
     t = (-b + np.sqrt(np.maximum(b * b - a * c, 0.0))) / a
+    for _ in range(_JOIN_STEPS):
+        hit = origin + t[..., None] * direction
+        r = np.hypot(hit[..., 0], hit[..., 1])
+        height, slope = surface_height(np.minimum(r, PROFILE_END_MM))
+        outwards = (hit[..., 0] * dx + hit[..., 1] * dy) / np.maximum(r, 1e-9)
+        rate = np.maximum(-dz - slope * outwards, 0.05)
+        t = t - np.clip((hit[..., 2] - height) / rate, -0.5, 0.5)
     hit = origin + t[..., None] * direction
-    is_cornea = np.hypot(hit[..., 0], hit[..., 1]) <= LIMBUS_RADIUS_MM
+    is_cornea = np.hypot(hit[..., 0], hit[..., 1]) <= CLEAR_REACH_MM
     return np.where(is_cornea[..., None], hit, np.nan)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import moderngl
@@ -17,11 +17,13 @@ import numpy.typing as npt
 
 from renderer.clip import ClipSpec
 from renderer.light import Sky
-from renderer.park.cube_maps import FACE_AXES, CubeTarget
-from renderer.park.environments import Environment, make_environment
+from renderer.park.cube_lookup import halve
+from renderer.park.cube_maps import FACE_AXES, CubeTarget, read_face
+from renderer.park.environments import AMBIENT_PX, Environment, make_environment
 from renderer.program import build_program
 
 SMALLEST_LEVEL_PX: Final = 32
+CHAMBER_FACE_PX: Final = 16  # 5.6 degrees: as fine as the rays that gather light on the iris
 BACKGROUND_CUBE_PX: Final = 1024
 
 
@@ -65,7 +67,9 @@ class Surroundings:
     @functools.cached_property
     def sky(self) -> Sky:
         """The light: the sun, and the surroundings' ambient light without it."""
-        return self._environment.sky(self.cube)
+        drawn = self.cube(AMBIENT_PX)
+        faces = np.stack([read_face(drawn, face)[..., :3] for face in range(6)])
+        return replace(self._environment.sky(self.cube), faces=halve(faces, CHAMBER_FACE_PX))
 
     def cube(self, size: int) -> moderngl.TextureCube:
         """Return the surroundings as a static cube map of ``size`` pixels a face, with levels."""

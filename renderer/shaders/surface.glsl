@@ -47,5 +47,5 @@ vec4 shade_at(vec3 p_eye) {
 float cornea_share(vec3 p_eye) {
     if (p_eye.z < 0.0) return 0.0;
     float r = length(vec2(p_eye.x, p_eye.y / LIMBUS_HEIGHT_RATIO));
-    return 1.0 / (1.0 + exp((r - LIMBUS_RADIUS_MM + 0.12) / 0.15));
+    return 1.0 / (1.0 + exp((r - LIMBUS_RADIUS_MM + LIMBUS_INSET_MM) / LIMBUS_WIDTH_MM));
 }

@@ -6,10 +6,26 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from renderer.eye.anatomy import CORNEA_IOR, SUN_ANGULAR_RADIUS_DEG
-from renderer.eye.caustics import MAP_EDGE_MM, caustic_map, entering_rays, lit_flux_mm2
+from renderer.eye.anatomy import (
+    APEX_MM,
+    CORNEA_IOR,
+    LIMBUS_HEIGHT_RATIO,
+    LIMBUS_INSET_MM,
+    LIMBUS_RADIUS_MM,
+    SUN_ANGULAR_RADIUS_DEG,
+)
+from renderer.eye.caustics import MAP_EDGE_MM, Front, caustic_map, entering_rays, lit_flux_mm2
+from renderer.eye.optics import conic_normal, corneal_sag
 
 IRIS_RADIUS_MM = 5.6  # the disc of the reference's table
+
+
+def hard_limbus(entry_mm: np.ndarray) -> np.ndarray:
+    return np.where(np.hypot(entry_mm[..., 0], entry_mm[..., 1]) < LIMBUS_RADIUS_MM, 1.0, 0.0)
+
+
+# Baker's cornea alone, cut off at a round limbus: what the reference's values were traced with.
+REFERENCE = Front(lambda r: APEX_MM - corneal_sag(r), conic_normal, hard_limbus)
 
 
 def sun_at(angle_deg: float) -> np.ndarray:
@@ -22,7 +38,7 @@ def texels(size: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_the_flux_along_the_axis_is_the_limbus_discs_times_the_transmittance() -> None:
-    assert lit_flux_mm2(sun_at(0), rays=512) == pytest.approx(105.1, abs=0.1)
+    assert lit_flux_mm2(sun_at(0), rays=512, front=REFERENCE) == pytest.approx(105.1, abs=0.1)
 
 
 @pytest.mark.parametrize("angle_deg", [0.0, 45.0, 75.0])
@@ -37,13 +53,13 @@ def test_the_map_holds_all_the_flux(angle_deg: float) -> None:
     [(0, 1.04), (30, 0.89), (45, 0.72), (60, 0.52), (70, 0.39), (80, 0.28), (90, 0.18)],
 )
 def test_mean_irradiance_follows_the_references_table(angle_deg: float, mean: float) -> None:
-    gain = caustic_map(sun_at(angle_deg), 128)[..., 2]
+    gain = caustic_map(sun_at(angle_deg), 128, front=REFERENCE)[..., 2]
     iris = np.hypot(*texels(128)) < IRIS_RADIUS_MM
     assert float(gain[iris].mean()) == pytest.approx(mean, rel=0.012, abs=0.005)
 
 
 def test_the_crescent_lies_opposite_the_light() -> None:
-    gain = caustic_map(sun_at(70), 256)[..., 2]
+    gain = caustic_map(sun_at(70), 256, front=REFERENCE)[..., 2]
     x, y = texels(256)
     inside = gain * (np.hypot(x, y) < 5.5)
     row, column = np.unravel_index(int(np.argmax(inside)), gain.shape)
@@ -77,8 +93,10 @@ def test_the_direction_at_the_centre_is_the_axis_rays() -> None:
 
 
 def test_a_wider_light_softens_the_edge_and_keeps_the_flux() -> None:
-    sharp = caustic_map(sun_at(60), 128, light_radius_deg=SUN_ANGULAR_RADIUS_DEG)[..., 2]
-    soft = caustic_map(sun_at(60), 128, light_radius_deg=10.0)[..., 2]
+    sharp, soft = (
+        caustic_map(sun_at(60), 128, light_radius_deg=radius_deg, front=REFERENCE)[..., 2]
+        for radius_deg in (SUN_ANGULAR_RADIUS_DEG, 10.0)
+    )
     assert np.abs(np.diff(soft, axis=1)).max() < 0.6 * np.abs(np.diff(sharp, axis=1)).max()
     assert float(soft.sum()) == pytest.approx(float(sharp.sum()), rel=5e-3)
 
@@ -86,3 +104,17 @@ def test_a_wider_light_softens_the_edge_and_keeps_the_flux() -> None:
 def test_a_sun_behind_the_head_lights_nothing() -> None:
     assert lit_flux_mm2(sun_at(150), rays=128) == 0.0
     assert not caustic_map(sun_at(150), 64)[..., 2].any()
+
+
+def test_the_drawn_limbus_is_oval_and_soft() -> None:
+    """It lets through what its own clear share leaves of the disc, and its shadow has no edge."""
+    disc_mm2 = math.pi * LIMBUS_RADIUS_MM**2 * LIMBUS_HEIGHT_RATIO
+    inset = ((LIMBUS_RADIUS_MM - LIMBUS_INSET_MM) / LIMBUS_RADIUS_MM) ** 2
+    transmittance = 0.979  # 1 - 0.0207 along the axis, hardly less up to the limbus
+    assert lit_flux_mm2(sun_at(0), rays=256) == pytest.approx(
+        disc_mm2 * inset * transmittance, rel=0.005
+    )
+    drawn, hard = (
+        caustic_map(sun_at(70), 128, **front)[..., 2] for front in ({}, {"front": REFERENCE})
+    )
+    assert np.abs(np.diff(drawn, axis=1)).max() < 0.5 * np.abs(np.diff(hard, axis=1)).max()
