@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import hashlib
 import re
 from collections.abc import Sequence
 from dataclasses import replace
@@ -77,13 +76,13 @@ def _surroundings(options: argparse.Namespace) -> dict[str, Any]:
         raise CommandError(
             f"--sun: {options.environment} brings its own sun; turn it with --environment-turn"
         )
+    from study.design.files import contents_sha256
+
     path = options.environment.absolute()
-    with path.open("rb") as file:
-        contents = hashlib.file_digest(file, "sha256").hexdigest()
     return {
         "environment": "image",
         "environment_file": str(path),
-        "environment_sha256": contents,
+        "environment_sha256": contents_sha256(path),
         "environment_turn_deg": options.environment_turn,
         "environment_exposure_ev": options.environment_exposure,
     }

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
@@ -17,10 +17,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
 
-from renderer.clip import ClipSpec
+from renderer.clip import PATHS, ClipSpec
 from renderer.detail import Detail
 from study.design.checks import cross_faults
 from study.design.faults import DefinitionError, Fault, faults_of, suggestion
+from study.design.files import find_files, without_paths
 from study.design.pairings import CatchClip, Clip, Factors, LodRow, all_clips, detail_of
 from study.design.parts import (
     Distance,
@@ -146,8 +147,11 @@ class StudyDefinition(Part):
 
     @property
     def definition_hash(self) -> str:
-        """16 hexadecimal digits over the contents; comments and the order of keys do not matter."""
-        text = json.dumps(self.model_dump(mode="json"), sort_keys=True)
+        """16 hexadecimal digits over the contents.
+
+        Comments, the order of keys and the places of pictures do not matter.
+        """
+        text = json.dumps(without_paths(self.model_dump(mode="json"), PATHS), sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -167,16 +171,23 @@ def read_definition(name_or_path: str | Path) -> StudyDefinition:
     Raises DefinitionError with every fault of the file.
     """
     text, source = _read_text(str(name_or_path))
+    folder = Path() if str(name_or_path) in built_in_names() else Path(name_or_path).parent
     try:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise DefinitionError(source, [Fault("", f"not a TOML file: {error}")]) from None
-    return parse_definition(data, source=source)
+    found, absent = find_files(data, folder)
+    return parse_definition(found, source=source, faults=absent)
 
 
-def parse_definition(data: Mapping[str, Any], *, source: str = "definition") -> StudyDefinition:
-    """Check the contents of a study file; raises DefinitionError with every fault at once."""
-    faults = cross_faults(data)
+def parse_definition(
+    data: Mapping[str, Any], *, source: str = "definition", faults: Sequence[Fault] = ()
+) -> StudyDefinition:
+    """Check the contents of a study file; raises DefinitionError with every fault at once.
+
+    ``faults`` are those that reading its files has shown already.
+    """
+    faults = [*faults, *cross_faults(data)]
     try:
         definition = StudyDefinition.model_validate(dict(data))
     except ValidationError as error:

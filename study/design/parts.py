@@ -6,11 +6,19 @@ The renderer decides which values a clip accepts (``renderer.clip``); this modul
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    model_validator,
+)
 
-from renderer.clip import ClipSpec
+from renderer.clip import ENVIRONMENTS, ClipSpec
 from renderer.detail import Detail
 from study.design.faults import refuse
 
@@ -133,10 +141,31 @@ class Eye(Part):
     caustic_pattern: Annotated[str, clip_value("caustic_pattern")] = "computed"
 
 
+def _check_environment(name: str) -> str:
+    if name not in ENVIRONMENTS:
+        raise refuse(
+            f'unknown environment "{name}"; write "park", or the path of a latitude-longitude HDR '
+            "picture (.exr or .hdr) beside the study file"
+        )
+    return name
+
+
 class Scene(Part):
     """Surroundings, sun and the other characters that the cornea reflects."""
 
-    environment: Annotated[str, clip_value("environment")] = "park"
+    environment: Annotated[str, AfterValidator(_check_environment)] = "park"
+    environment_file: str = ""
+    environment_sha256: str = ""
+    environment_turn_deg: Annotated[Real, clip_value("environment_turn_deg")] = 0.0
+    environment_exposure_ev: Annotated[Real, clip_value("environment_exposure_ev")] = 0.0
     sun_azimuth_deg: Annotated[Real, clip_value("sun_azimuth_deg")] = -15.0
     sun_elevation_deg: Annotated[Real, clip_value("sun_elevation_deg")] = 42.0
     crowd: Annotated[Whole, clip_value("crowd")] = 5
+
+    @model_validator(mode="after")
+    def _accepted_by_clip(self) -> Self:
+        try:
+            ClipSpec(left=Detail(), right=Detail(), **self.model_dump())
+        except ValueError as error:
+            raise refuse(str(error)) from None
+        return self
