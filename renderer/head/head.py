@@ -17,15 +17,16 @@ from renderer.cache import cached_array
 from renderer.camera import Matrix
 from renderer.clip import ClipSpec
 from renderer.eye.lids import LidRims
+from renderer.head.brows import grow_brow
 from renderer.head.buffers import CellMesh, TilePyramid
 from renderer.head.clothing import knit_tile
 from renderer.head.face_mesh import face_mesh, to_world
 from renderer.head.hair import grow_hair, hair_cap
-from renderer.head.lashes import grow_brow, grow_lashes
+from renderer.head.lashes import grow_lashes
 from renderer.head.lid_rims import lid_rims
 from renderer.head.light import light_strands, light_surfaces, open_sky
 from renderer.head.skin import TILE_MM, TILE_PX, pore_tile
-from renderer.head.strands import StrandMesh
+from renderer.head.strands import StrandMesh, blending
 from renderer.head.surfaces import cap_surface, cloth_surface, skin_surfaces
 from renderer.light import Light
 from renderer.program import build_program
@@ -97,11 +98,9 @@ class Head:
     def draw_hair(
         self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
     ) -> None:
-        """Draw lashes, brows and hair; they cover samples by their alpha."""
+        """Draw lashes, brows and hair over everything else, each as much as it covers."""
         self._use_light(light)
         program = self._programs["hair"]
-        self.gl.enable_only(moderngl.DEPTH_TEST)
-        self.gl.enable_direct(SAMPLE_ALPHA_TO_COVERAGE)
         pixel_per_mm = self._pixel_per_mm(projection)
         program.set(
             u_view_matrix=view_matrix,
@@ -112,9 +111,9 @@ class Head:
             **light.uniforms(),
         )
         clip = projection @ view_matrix
-        for mesh, _ in self._hair:
-            mesh.draw(program, clip, camera_mm=np.asarray(camera_mm, dtype=float))
-        self.gl.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
+        with blending(self.gl):
+            for mesh, _ in self._hair:
+                mesh.draw(program, clip, camera_mm=np.asarray(camera_mm, dtype=float))
 
     def draw_depth(self, matrix: npt.ArrayLike) -> None:
         """Draw what is opaque into a depth map with a world-to-clip matrix."""
@@ -148,7 +147,7 @@ def _grow_hair(gl: moderngl.Context) -> list[tuple[StrandMesh, float]]:
     meshes = []
     for eye in (0, 1):
         rng = np.random.Generator(np.random.PCG64(HAIR_SEED + eye))
-        for strands in (grow_lashes(face.lids[eye], rng), grow_brow(face.sockets[eye], rng)):
+        for strands in (*grow_lashes(face.lids[eye], rng), grow_brow(face.sockets[eye], rng)):
             placed = replace(strands, points_mm=to_world(strands.points_mm, eye))
             meshes.append((StrandMesh(gl, placed, rng), FACE_HAIR_BIAS_MM))
     rng = np.random.Generator(np.random.PCG64(HAIR_SEED + 2))

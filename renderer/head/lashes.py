@@ -1,6 +1,8 @@
-"""Eyelashes and eyebrows, hair by hair, grown on the fitted lids and the brow ridge. Pure numpy.
+"""Eyelashes, hair by hair, rooted on the lids that they are given. Pure numpy.
 
-Patch space (see ``lid_fit``) while growing; ``grow_face_hair`` returns world space in mm.
+A lash grows in the frame of its root: along the rim, away from the fissure over the lid's skin, and
+straight off the skin. All numbers are drawn before the lid is looked at. So when the lid moves, its
+lashes move with it and stay the same hairs. Patch space (see ``lid_fit``), mm.
 """
 
 from __future__ import annotations
@@ -10,172 +12,297 @@ from typing import Final
 
 import numpy as np
 
-from renderer.body.makehuman import Floats
-from renderer.head.lid_fit import LidPatch, Socket
+from renderer.body.makehuman import Floats, Indices
+from renderer.head.lid_fit import LidPatch
 
-UPPER_COUNT: Final = 165  # adults: about 150 upper, 75 lower lashes in two or three rows
-LOWER_COUNT: Final = 80
-BROW_COUNT: Final = 680
-LASH_POINTS: Final = 8
-BROW_POINTS: Final = 5
-LASH_COLOUR: Final = (0.052, 0.030, 0.019)
-BROW_COLOUR: Final = (0.030, 0.018, 0.011)
-# The brow's middle line from nose to temple: x, y, half width in mm, direction of growth in degrees
-# above the way to the temple.
-BROW: Final = np.array(
-    [
-        (-17.5, 18.6, 2.6, 78.0),
-        (-12.0, 19.9, 3.7, 58.0),
-        (-4.0, 21.6, 3.5, 36.0),
-        (5.0, 23.4, 3.0, 18.0),
-        (12.0, 23.9, 2.4, -4.0),
-        (19.0, 22.0, 1.6, -24.0),
-        (26.0, 18.4, 0.7, -36.0),
-    ]
-)
+POINTS: Final = 14
+SHADOW_POINTS: Final = 5
+SUNK_MM: Final = 0.3  # roots lie in the skin
+OWN_SKIN: Final = 0.3  # what the lid's skin says against the globe beneath, about a lash's frame
+SHADOW_MM: Final = 0.5  # width of the soft shadow at a root
+COLOUR: Final = (0.062, 0.037, 0.024)  # dark brown; tips let more light through (fibre.glsl)
 
 
 @dataclass(frozen=True)
 class Strands:
-    """Hairs: points (n, k, 3) in mm, width at the root (n,) in mm, linear colour (n, 3)."""
+    """Hairs: points (n, k, 3) in mm, width at the root (n,) in mm, linear colour (n, 3).
+
+    ``shadow`` (n,) is what a strand takes from the light of what lies under it: above 0 it is no
+    hair but the soft shadow of one. None means hairs only.
+    """
 
     points_mm: Floats
     width_mm: Floats
     colour: Floats
+    shadow: Floats | None = None
 
 
-def grow_lashes(lid: LidPatch, rng: np.random.Generator) -> Strands:
-    """Return upper and lower lashes of one eye in patch space."""
-    upper = _lash_row(lid, rng, is_upper=True, count=UPPER_COUNT)
-    lower = _lash_row(lid, rng, is_upper=False, count=LOWER_COUNT)
-    points = np.concatenate([upper, lower])
-    width = np.concatenate(
-        [rng.uniform(0.045, 0.085, len(upper)), rng.uniform(0.030, 0.055, len(lower))]
+@dataclass(frozen=True)
+class LashRow:
+    """How the lashes of one lid grow; numbers of adults.
+
+    ``along`` holds columns: place from the nose's end (0) to the temple's (1), length in mm, lean
+    towards the temple in degrees, how thick the hairs stand. ``curl_deg`` are the angles between
+    the lid's normal and the hair at root, middle and tip, positive away from the fissure.
+    ``between_mm`` is where along the rim's chord lashes begin and end.
+    """
+
+    count: int
+    is_upper: bool
+    along: tuple[tuple[float, float, float, float], ...]
+    curl_deg: tuple[float, float, float]
+    curl_spread_deg: float
+    rows_mm: tuple[float, ...]  # beyond the lid's outer edge
+    width_mm: tuple[float, float]
+    between_mm: tuple[float, float]
+    shadow: float
+
+
+# About 150 upper lashes of 8 to 12 mm and 75 lower of 6 to 8 mm, in two or three rows.
+UPPER: Final = LashRow(
+    count=150,
+    is_upper=True,
+    along=(
+        (0.0, 4.8, -13.0, 0.6),
+        (0.15, 7.0, -10.0, 0.9),
+        (0.4, 9.2, -1.0, 1.1),
+        (0.65, 10.0, 8.0, 1.1),
+        (0.85, 9.2, 17.0, 1.0),
+        (1.0, 6.8, 27.0, 0.7),
+    ),
+    curl_deg=(-14.0, 14.0, 48.0),
+    curl_spread_deg=10.0,
+    rows_mm=(-0.3, 0.05, 0.38),
+    width_mm=(0.068, 0.100),
+    between_mm=(-12.2, 12.3),
+    shadow=0.26,
+)
+LOWER: Final = LashRow(
+    count=75,
+    is_upper=False,
+    along=(
+        (0.0, 4.2, -16.0, 0.5),
+        (0.2, 5.6, -10.0, 0.9),
+        (0.5, 6.9, 2.0, 1.1),
+        (0.8, 6.6, 12.0, 1.0),
+        (1.0, 4.4, 16.0, 0.4),
+    ),
+    curl_deg=(2.0, 24.0, 18.0),
+    curl_spread_deg=9.0,
+    rows_mm=(0.0, 0.35),
+    width_mm=(0.044, 0.066),
+    between_mm=(-10.0, 11.3),
+    shadow=0.16,
+)
+
+
+@dataclass(frozen=True)
+class _Growth:
+    """What chance gives each hair of a row, in the order of their roots from the nose."""
+
+    place: Floats  # along the row, 0 to 1
+    beyond_mm: Floats  # the outer edge
+    length_mm: Floats
+    lean_deg: Floats
+    sway_deg: Floats  # what the lean gains from root to tip
+    curl_deg: Floats  # (n, 3) at root, middle, tip
+    width_mm: Floats
+    tuft: Indices  # hairs of one number meet at their tips
+    pull: Floats  # how close they come, 0 to 1
+    tone: Floats
+
+
+def grow_lashes(lid: LidPatch, rng: np.random.Generator) -> tuple[Strands, Strands]:
+    """Return the soft shadows at the roots of one eye's lashes, and the lashes, in patch space.
+
+    Both hold ``UPPER.count`` strands, then ``LOWER.count``, in the same order.
+    """
+    rows = [(row, _chance(row, rng)) for row in (UPPER, LOWER)]
+    shadows = joined([_shadows(lid, row, growth) for row, growth in rows])
+    return shadows, joined([_hairs(lid, row, growth) for row, growth in rows])
+
+
+def joined(groups: list[Strands]) -> Strands:
+    """Return groups of hairs, or groups of shadows, as one."""
+    shadows = [group.shadow for group in groups if group.shadow is not None]
+    return Strands(
+        np.concatenate([group.points_mm for group in groups]),
+        np.concatenate([group.width_mm for group in groups]),
+        np.concatenate([group.colour for group in groups]),
+        np.concatenate(shadows) if shadows else None,
     )
-    tone = rng.uniform(0.5, 1.6, size=(len(points), 1))
-    return Strands(points, width, np.array(LASH_COLOUR) * tone)
 
 
-def _lash_row(lid: LidPatch, rng: np.random.Generator, *, is_upper: bool, count: int) -> Floats:
-    """Return hairs (count, LASH_POINTS, 3) of one lid."""
+def _chance(row: LashRow, rng: np.random.Generator) -> _Growth:
+    """Draw all random numbers of a row."""
+    n = row.count
+    knots, length, lean, density = np.array(row.along).T
+    fine = np.linspace(0, 1, 201)
+    share = np.cumsum(np.interp(fine, knots, density))
+    place = np.interp((np.arange(n) + rng.normal(0.5, 0.75, n)) / n, share / share[-1], fine)
+    place = np.sort(np.clip(place, 0.0, 1.0))
+    tuft = _tufts(rng, n)
+    is_new = rng.random(n) < 0.09  # a few have just grown
+    grown = np.where(is_new, rng.uniform(0.35, 0.65, n), rng.normal(1.0, 0.10, n).clip(0.75, 1.18))
+    # Hairs of a tuft lean alike, neighbouring tufts nearly so; some hairs cross their neighbours.
+    strays = np.where(rng.random(n) < 0.10, 12.0, 3.0)
+    waves = np.interp(place, np.linspace(0, 1, 23), rng.normal(0, 5.0, 23))
+    lean_deg = np.interp(place, knots, lean) + waves
+    lean_deg += rng.normal(0, 4.5, n)[tuft] + rng.normal(0, 1, n) * strays
+    turn = rng.normal(0, 0.75, n)[tuft] * row.curl_spread_deg + rng.normal(0, 0.6, n) * 5.0
+    curl = np.array(row.curl_deg) + turn[:, None] * np.array([0.35, 0.8, 1.3])
+    curl[:, 0] += rng.normal(0, 5.0, n)
+    return _Growth(
+        place=place,
+        beyond_mm=rng.choice(row.rows_mm, size=n) + rng.normal(0, 0.09, n),
+        length_mm=np.interp(place, knots, length) * grown,
+        lean_deg=lean_deg,
+        sway_deg=0.6 * np.interp(place, knots, lean) + rng.normal(0, 7.0, n),
+        curl_deg=curl,
+        width_mm=rng.uniform(*row.width_mm, n) * np.where(is_new, 0.7, 1.0),
+        tuft=tuft,
+        pull=(rng.uniform(0.15, 0.85, n) * (rng.random(n) < 0.8))[tuft],
+        tone=rng.uniform(0.7, 1.45, n),
+    )
+
+
+def _tufts(rng: np.random.Generator, count: int) -> Indices:
+    """Return tuft numbers (count,) of hairs in a row: ones, twos and threes."""
+    sizes = rng.choice([1, 2, 3], size=count, p=[0.34, 0.36, 0.30])
+    return np.repeat(np.arange(count), sizes)[:count]
+
+
+def _hairs(lid: LidPatch, row: LashRow, growth: _Growth) -> Strands:
+    """Grow one lid's lashes."""
+    index, frame = _roots(lid, row, growth)
+    s = np.linspace(0, 1, POINTS)
+    curl = np.radians(_through(growth.curl_deg, s))
+    lean = np.radians(growth.lean_deg[:, None] + growth.sway_deg[:, None] * s)
+    local = np.stack([np.sin(lean), np.cos(lean) * np.sin(curl), np.cos(lean) * np.cos(curl)], -1)
+    direction = np.einsum("nsk,nkc->nsc", local, frame)
+    root = _on_skin(lid, index, growth.beyond_mm) - SUNK_MM * direction[:, 0]
+    step = (growth.length_mm / (POINTS - 1))[:, None, None]
+    way = np.cumsum((direction[:, 1:] + direction[:, :-1]) / 2 * step, axis=1)
+    points = root[:, None] + np.concatenate([np.zeros((row.count, 1, 3)), way], axis=1)
+    colour = np.array(COLOUR) * growth.tone[:, None]
+    return Strands(_gathered(points, growth), growth.width_mm, colour)
+
+
+def _through(values: Floats, s: Floats) -> Floats:
+    """Return parabolas (n, k) at places s (k,) through values (n, 3) at 0, 1/2 and 1."""
+    basis = np.stack([2 * (s - 0.5) * (s - 1), 4 * s * (1 - s), 2 * s * (s - 0.5)])
+    return np.asarray(values @ basis)
+
+
+def _gathered(points: Floats, growth: _Growth) -> Floats:
+    """Draw the hairs of a tuft together, more towards their tips."""
+    members = np.bincount(growth.tuft)
+    middle = np.zeros((len(members), *points.shape[1:]))
+    np.add.at(middle, growth.tuft, points)
+    middle = (middle / np.maximum(members, 1)[:, None, None])[growth.tuft]
+    s = np.linspace(0, 1, points.shape[1])
+    return np.asarray(points + (growth.pull[:, None] * s**1.5)[..., None] * (middle - points))
+
+
+def _shadows(lid: LidPatch, row: LashRow, growth: _Growth) -> Strands:
+    """Lay a short soft shadow on the skin at each root."""
+    index, _ = _roots(lid, row, growth)
+    reach = 1.5 if row.is_upper else 1.1
+    shift = np.tan(np.radians(np.clip(growth.lean_deg, -50, 50))) * (-1.0 if row.is_upper else 1.0)
+    step = _rim_step_mm(lid)
+    ways = np.linspace(0.0, reach, SHADOW_POINTS)
+    points = [_on_skin(lid, index + shift * way / step, growth.beyond_mm + way) for way in ways]
+    black = np.zeros((row.count, 3))
+    return Strands(
+        np.stack(points, axis=1),
+        np.full(row.count, SHADOW_MM),
+        black,
+        np.full(row.count, row.shadow),
+    )
+
+
+def _rim_step_mm(lid: LidPatch) -> float:
+    """Return the mean distance of the rim's points."""
     ring = lid.points_mm[:, lid.rim_row]
-    on_lid = lid.is_upper > 0.8 if is_upper else lid.is_upper < 0.2
-    x = ring[:, 0]
-    allowed = np.flatnonzero(on_lid & (x > (-12.0 if is_upper else -9.5)) & (x < 12.4))
-    place = (np.arange(count) + rng.uniform(-0.8, 0.8, count)) / count
-    index = allowed[0] + np.clip(place, 0, 1) * (allowed[-1] - allowed[0])
-    row = lid.rim_row + rng.choice([0.0, 1.2, 2.4], size=count, p=[0.45, 0.35, 0.2])
-    root = _on_patch(lid, index, row)
-    root -= 0.08 * root / np.linalg.norm(root, axis=1, keepdims=True)
-    length = _lash_lengths(root[:, 0], rng, is_upper=is_upper)
-    start, end = _lash_directions(root, rng, is_upper=is_upper)
-    # How soon a hair curls differs from hair to hair.
-    soon = rng.uniform(0.34, 0.5, count) if is_upper else np.full(count, 0.5)
-    bend = root + start * (soon * length)[:, None]
-    tip = bend + end * ((1.08 - soon) * length)[:, None]
-    tip += _towards_clump(tip, rng)
-    s = np.linspace(0, 1, LASH_POINTS)[None, :, None]
-    curve = (1 - s) ** 2 * root[:, None] + 2 * s * (1 - s) * bend[:, None] + s**2 * tip[:, None]
-    return np.asarray(curve)
+    return float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).mean())
 
 
-def _on_patch(lid: LidPatch, index: Floats, row: Floats) -> Floats:
-    """Interpolate the patch's surface at fractional grid places."""
-    i, j = np.floor(index).astype(int), np.floor(row).astype(int)
-    f, g = (index - i)[:, None], (row - j)[:, None]
-    p, n = lid.points_mm, lid.points_mm.shape[0]
-    near = p[i % n, j] * (1 - g) + p[i % n, j + 1] * g
-    far = p[(i + 1) % n, j] * (1 - g) + p[(i + 1) % n, j + 1] * g
-    return np.asarray(near * (1 - f) + far * f)
-
-
-def _lash_lengths(x: Floats, rng: np.random.Generator, *, is_upper: bool) -> Floats:
-    """Return lengths in mm: longest in the outer half, short towards the nose."""
-    along = (x + 12.0) / 24.5
-    shape = 0.50 + 0.55 * np.sin(np.pi * np.clip(0.12 + 0.72 * along, 0, 1)) ** 1.2
-    longest = 7.8 if is_upper else 4.3
-    grown = np.where(rng.random(len(x)) < 0.25, 0.55, 1.0)  # a quarter is still growing
-    return np.asarray(longest * shape * grown * rng.uniform(0.75, 1.08, len(x)))
-
-
-def _lash_directions(
-    root: Floats, rng: np.random.Generator, *, is_upper: bool
-) -> tuple[Floats, Floats]:
-    """Return unit directions at the root and at the tip: forwards, fanning out, curling away."""
-    count = len(root)
-    fan = np.clip(root[:, 0] / 13.0 + 0.10, -1, 1) * (0.62 if is_upper else 0.5)
-    # Neighbours lean alike, so that hairs seldom cross.
-    knots = np.linspace(-13.0, 13.0, 19)
-    fan = fan + np.interp(root[:, 0], knots, rng.normal(0, 0.14, len(knots)))
-    fan = fan + rng.normal(0, 0.08, count)
-    lift = rng.normal(0, 0.11, count)
-    if is_upper:
-        first = np.column_stack([fan * 0.6, -0.22 + lift, np.full(count, 0.95)])
-        last = np.column_stack([fan * 1.2, 1.05 + lift, np.full(count, 0.40)])
-    else:
-        first = np.column_stack([fan * 0.8, -0.35 + lift, np.full(count, 0.85)])
-        last = np.column_stack([fan * 1.3, -0.42 + lift, np.full(count, 0.62)])
-    # Near the temple the whole fan turns sideways with the lid.
-    turn = np.clip((root[:, 0] - 4.0) / 9.0, 0, 1)[:, None] * np.array([0.45, 0.0, -0.2])
-    first, last = first + turn, last + turn
-    return (
-        first / np.linalg.norm(first, axis=1, keepdims=True),
-        last / np.linalg.norm(last, axis=1, keepdims=True),
+def _roots(lid: LidPatch, row: LashRow, growth: _Growth) -> tuple[Floats, Floats]:
+    """Return fractional places (n,) on the ring, and frames (n, 3, 3): temple, outwards, normal."""
+    around = len(lid.points_mm)
+    ring = lid.points_mm[:, lid.rim_row]
+    on_lid = lid.is_upper > 0.5 if row.is_upper else lid.is_upper < 0.5
+    low, high = row.between_mm
+    allowed = np.flatnonzero(on_lid & (ring[:, 0] > low) & (ring[:, 0] < high))
+    first, last = float(allowed[0]), float(allowed[-1])
+    # The ring runs from the temple over the upper lid to the nose, and back below.
+    index = (
+        last - growth.place * (last - first)
+        if row.is_upper
+        else first + growth.place * (last - first)
     )
+    frames = rim_frames(lid)
+    base = np.floor(index).astype(int)
+    share = (index - base)[:, None, None]
+    frame = frames[base % around] * (1 - share) + frames[(base + 1) % around] * share
+    return index, _unit(frame)
 
 
-def _towards_clump(tip: Floats, rng: np.random.Generator) -> Floats:
-    """Return shifts that draw neighbouring tips together in tufts of two to five."""
-    order = np.argsort(tip[:, 0], kind="stable")
-    shift = np.zeros_like(tip)
-    at = 0
-    while at < len(order):
-        size = int(rng.integers(1, 7))
-        members = order[at : at + size]
-        strength = rng.uniform(0.1, 0.95)
-        shift[members] = strength * (tip[members].mean(axis=0) - tip[members])
-        at += size
-    return shift
+def rim_frames(lid: LidPatch) -> Floats:
+    """Return unit frames (around, 3, 3) on the rim: along it to the temple, outwards, normal.
+
+    Outwards is the way over the lid's skin, away from the fissure. The normal is mostly the
+    globe's, on which lids slide, turned a little by the lid's own skin; all are smoothed along the
+    rim, so that lashes fan evenly over small bumps.
+    """
+    points, rim = lid.points_mm, lid.rim_row
+    forward = np.roll(points[:, rim], -1, axis=0) - np.roll(points[:, rim], 1, axis=0)
+    temple = _unit(_smoothed(forward * np.where(lid.is_upper > 0.5, -1.0, 1.0)[:, None]))
+    skin = np.array([np.interp(1.6, a - a[rim], np.arange(len(a))) for a in lid.across_mm])
+    outwards = _unit(_smoothed(_at_rows(points, skin) - points[:, rim]))
+    globe = _unit(points[:, rim])
+    own = np.cross(temple, outwards)
+    own *= np.sign((own * globe).sum(axis=1, keepdims=True))
+    normal = _smoothed(globe + OWN_SKIN * own)
+    normal = _unit(normal - temple * (normal * temple).sum(axis=1, keepdims=True))
+    across = np.cross(normal, temple)
+    across *= np.where(lid.is_upper > 0.5, 1.0, -1.0)[:, None]
+    return np.stack([temple, across, normal], axis=1)
 
 
-def grow_brow(socket: Socket, rng: np.random.Generator) -> Strands:
-    """Return the eyebrow above one eye in patch space."""
-    along = rng.beta(1.15, 1.1, BROW_COUNT)
-    across = np.clip(rng.normal(0, 0.48, BROW_COUNT), -1.1, 1.1)
-    knots = np.linspace(0, 1, len(BROW))
-    x, y, half, angle = (np.interp(along, knots, column) for column in BROW.T)
-    slope = np.gradient(np.interp(np.linspace(0, 1, 101), knots, BROW[:, 1]))
-    normal_lean = -np.interp(along, np.linspace(0, 1, 101), slope) * 2.0
-    root = np.column_stack([x + across * half * normal_lean * 0.3, y + across * half])
-    # Hairs of the upper border lean down, those of the lower border up: they meet in the middle.
-    angle = angle - across * 24.0 * np.clip(along * 3, 0, 1) + rng.normal(0, 9.0, BROW_COUNT)
-    length = (7.2 - 2.2 * np.abs(along - 0.4)) * rng.uniform(0.55, 1.1, BROW_COUNT)
-    length *= np.where(along > 0.85, 0.75, 1.0)
-    points = _lay_on_face(socket, root, angle, length=length, rng=rng)
-    width = rng.uniform(0.055, 0.095, BROW_COUNT)
-    tone = rng.uniform(0.6, 1.7, size=(BROW_COUNT, 1))
-    return Strands(points, width, np.array(BROW_COLOUR) * tone)
+def _unit(vectors: Floats) -> Floats:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
-def _lay_on_face(
-    socket: Socket,
-    root: Floats,
-    angle_deg: Floats,
-    *,
-    length: Floats,
-    rng: np.random.Generator,
-) -> Floats:
-    """Return hairs (n, BROW_POINTS, 3) that rise from the skin and lie down along their way."""
-    bend = rng.normal(-10.0, 9.0, len(root))
-    height = rng.uniform(0.5, 1.1, len(root))
-    steps = np.linspace(0, 1, BROW_POINTS)
-    place = root.copy()
-    points = []
-    for number, s in enumerate(steps):
-        lift = height * np.sin(np.pi * min(0.15 + 0.75 * s, 1.0)) - 0.35
-        z = socket.height(place) + np.maximum(lift, -0.1 if number == 0 else 0.12)
-        points.append(np.column_stack([place, z]))
-        heading = np.radians(angle_deg + bend * s)
-        step = (length / (BROW_POINTS - 1))[:, None]
-        place = place + step * np.column_stack([np.cos(heading), np.sin(heading)])
-    return np.stack(points, axis=1)
+def _smoothed(values: Floats) -> Floats:
+    """Average (around, 3) along the ring over some 3 mm."""
+    for _ in range(12):
+        values = (np.roll(values, 1, axis=0) + 2 * values + np.roll(values, -1, axis=0)) / 4
+    return values
+
+
+def _at_rows(points: Floats, rows: Floats) -> Floats:
+    """Interpolate a grid (n, along, 3) at one fractional row each."""
+    base = np.clip(np.floor(rows).astype(int), 0, points.shape[1] - 2)
+    share = (rows - base)[:, None]
+    every = np.arange(len(points))
+    return np.asarray(points[every, base] * (1 - share) + points[every, base + 1] * share)
+
+
+def _on_skin(lid: LidPatch, index: Floats, beyond_mm: Floats) -> Floats:
+    """Return points of the lid (n, 3) at places on the ring, so far beyond its outer edge."""
+    around = len(lid.points_mm)
+    base = np.floor(index).astype(int)
+    sides = []
+    for column in (base % around, (base + 1) % around):
+        across = lid.across_mm[column]
+        wanted = across[:, lid.rim_row] + beyond_mm
+        rows = np.array(
+            [
+                np.interp(at, line, np.arange(len(line)))
+                for at, line in zip(wanted, across, strict=True)
+            ]
+        )
+        sides.append(_at_rows(lid.points_mm[column], rows))
+    share = (index - base)[:, None]
+    return np.asarray(sides[0] * (1 - share) + sides[1] * share)

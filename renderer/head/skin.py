@@ -16,10 +16,10 @@ from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats
 from renderer.camera import eye_centre_mm
+from renderer.head.brows import BROW_COLOUR, stubble
 from renderer.head.face_mesh import SkinPart, face_mesh
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import inside_hairline
-from renderer.head.lashes import BROW, BROW_COLOUR
 
 SCALP: Final = 0.55  # what is dark between the hairs, as a share of their colour
 BASE: Final = (0.60, 0.375, 0.275)
@@ -71,10 +71,8 @@ def _stubble(albedo: Floats, part: SkinPart) -> None:
     for eye in (0, 1):
         local = part.points_mm - eye_centre_mm(eye)
         x, y = local[:, 0] * (1.0 if eye else -1.0), local[:, 1]
-        middle, half = (np.interp(x, BROW[:, 0], BROW[:, column]) for column in (1, 2))
-        inside = np.exp(-(((y - middle) / (half + 0.6)) ** 4)) * (np.abs(x - 4.0) < 22.0)
         front = part.points_mm[:, 2] > -20.0
-        albedo += (0.62 * inside * front)[:, None] * (np.array(BROW_COLOUR) - albedo)
+        albedo += (stubble(x, y) * front)[:, None] * (np.array(BROW_COLOUR) - albedo)
 
 
 def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:

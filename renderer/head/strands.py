@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
-from typing import Final
+from typing import Any, Final
 
 import moderngl
 import numpy as np
@@ -16,7 +18,37 @@ from renderer.head.lashes import Strands
 from renderer.program import Program
 
 SILHOUETTE: Final = 0.3  # sine of how far beyond the horizon of its body hair may still be seen
-LAYOUT = ("3f 3f 4f 3f", ["in_position", "in_tangent", "in_ribbon", "in_colour"])
+LAYOUT = ("3f 3f 4f 4f", ["in_position", "in_tangent", "in_ribbon", "in_colour"])
+MULTISAMPLE: Final = 0x809D
+ALPHA_KEEPING_TARGET: Final[Any] = (  # moderngl's stub knows only the pair
+    moderngl.SRC_ALPHA,
+    moderngl.ONE_MINUS_SRC_ALPHA,
+    moderngl.ZERO,
+    moderngl.ONE,
+)
+LEAST_PX: Final = 0.25  # hairs that would cover less of a pixel are thinned out
+LEAST_LOCK_PX: Final = 1.0
+LOCK: Final = 6  # hairs of the scalp that one ribbon stands for
+
+
+@contextmanager
+def blending(gl: moderngl.Context) -> Iterator[None]:
+    """Let hairs cover what was drawn before by their alpha; they hide nothing from each other.
+
+    A pixel's four samples get the same alpha, which hair.frag knows better than four samples do.
+    The framebuffer's own alpha stays what it was: full.
+    """
+    gl.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
+    gl.blend_func = ALPHA_KEEPING_TARGET
+    gl.disable_direct(MULTISAMPLE)
+    target = gl.fbo
+    target.depth_mask = False
+    try:
+        yield
+    finally:
+        target.depth_mask = True
+        gl.enable_direct(MULTISAMPLE)
+        gl.disable(moderngl.BLEND)
 
 
 class StrandMesh:
@@ -64,12 +96,16 @@ class StrandMesh:
                 self._index,
             )
         camera = camera_mm if self._hides else None
+        program.set(
+            u_strands=LOCK if self._hides else 1,
+            u_least_px=LEAST_LOCK_PX if self._hides else LEAST_PX,
+        )
         for first, count in self._cells.visible(np.asarray(clip, dtype=float), camera):
             self._array.render(vertices=count, first=first)
 
 
 def ribbons(strands: Strands, rng: np.random.Generator) -> tuple[Floats, Indices]:
-    """Return vertex rows (n, 13) in the order of LAYOUT and triangles (m, 3).
+    """Return vertex rows (n, 14) in the order of LAYOUT and triangles (m, 3).
 
     ``in_ribbon``: side -1 or 1, half width at the root in mm, place along the strand 0 to 1, and
     the thinning number.
@@ -79,13 +115,16 @@ def ribbons(strands: Strands, rng: np.random.Generator) -> tuple[Floats, Indices
     tangent /= np.maximum(np.linalg.norm(tangent, axis=2, keepdims=True), 1e-9)
     along = np.broadcast_to(np.linspace(0, 1, points), (count, points))
     half = np.broadcast_to(0.5 * strands.width_mm[:, None], (count, points))
-    number = np.broadcast_to(rng.uniform(0, 1, (count, 1)), (count, points))
-    colour = np.broadcast_to(strands.colour[:, None], (count, points, 3))
+    number = (rng.permutation(count) + 0.5) / max(count, 1)
+    number = np.broadcast_to(number[:, None], (count, points))
+    shadow = np.zeros(count) if strands.shadow is None else strands.shadow
+    colour = np.column_stack([strands.colour, shadow])[:, None]
+    colour = np.broadcast_to(colour, (count, points, 4))
     sides = []
     for side in (-1.0, 1.0):
         ribbon = np.stack([np.full((count, points), side), half, along, number], axis=-1)
         sides.append(np.concatenate([strands.points_mm, tangent, ribbon, colour], axis=-1))
-    rows = np.stack(sides, axis=2).reshape(-1, 13)
+    rows = np.stack(sides, axis=2).reshape(-1, 14)
     strand, step = np.meshgrid(np.arange(count), np.arange(points - 1), indexing="ij")
     first = (strand * points + step).ravel() * 2
     quads = np.stack([first, first + 1, first + 3, first + 2], axis=1)

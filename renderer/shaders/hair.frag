@@ -1,11 +1,33 @@
-// Provides: one hair, or a lock of scalp hair, whose strands of different lightness lie side by side.
+// Provides: one hair, a lock whose hairs lie side by side, or the soft shadow at a hair's root.
+// Alpha is the share of the pixel that it covers: exact for a straight edge, so the same hair is
+// as dark at every distance.
 
-in vec3 v_radiance;
-in vec3 v_hair;       // side, number, alpha
+in vec3 v_body;
+in vec3 v_glint;
+in vec4 v_ribbon;     // way across in px, half width in px, place along, thinning number
+in float v_shadow;
+
+uniform int u_strands;
 
 out vec4 out_radiance;
 
+// How much of a pixel around ``at`` lies within ``half_px`` of the hair's middle.
+float covered(float at, float half_px) {
+    return max(min(half_px, at + 0.5) - max(-half_px, at - 0.5), 0.0);
+}
+
 void main() {
-    float strand = fract(floor(v_hair.x * 3.0 + 4.0) * 0.618 + v_hair.y * 17.0);
-    out_radiance = vec4(v_radiance * (0.6 + 0.8 * strand), v_hair.z);
+    float at = v_ribbon.x, half_px = v_ribbon.y;
+    float alpha = covered(at, half_px) * min(v_ribbon.z * 30.0, 1.0);  // it leaves the skin softly
+    float x = clamp(at / max(half_px, 0.5), -1.0, 1.0);
+    float round_px = clamp(half_px - 0.5, 0.0, 1.0);
+    // A cylinder: the glints run along its middle, thinner sides let light through.
+    float middle = 1.0 - x * x;
+    vec3 radiance = v_body * mix(1.0, 1.25 - 0.375 * middle, round_px) + v_glint * mix(1.0, 1.5 * middle, round_px);
+    if (v_shadow > 0.0) {
+        float fade = v_ribbon.z * (1.0 - v_ribbon.z) * (1.0 - v_ribbon.z);
+        alpha = 6.75 * v_shadow * middle * middle * fade;
+        radiance = vec3(0.0);
+    }
+    out_radiance = vec4(radiance, alpha);
 }

@@ -1,75 +1,154 @@
-"""Lashes and brows: numbers, places, directions, reproducibility."""
+"""Lashes: numbers, lengths, curl, roots on whatever lid they are given, reproducibility."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
+import numpy.typing as npt
+import pytest
 
-from renderer.head import lashes
+from renderer.eye.anatomy import GLOBE_RADIUS_MM
+from renderer.eye.optics import surface_height
 from renderer.head.face_mesh import face_mesh
-from renderer.head.lid_rims import globe_height
-from renderer.head.strands import ribbons
+from renderer.head.lashes import UPPER, Strands, grow_lashes, rim_frames
+from renderer.head.lid_fit import LidPatch
+
+Floats = npt.NDArray[np.float64]
 
 
-def rng() -> np.random.Generator:
-    return np.random.Generator(np.random.PCG64(3))
+def rng(seed: int = 3) -> np.random.Generator:
+    return np.random.Generator(np.random.PCG64(seed))
 
 
-def grown() -> lashes.Strands:
-    return lashes.grow_lashes(face_mesh().lids[1], rng())
+@pytest.fixture(scope="module")
+def lid() -> LidPatch:
+    return face_mesh().lids[1]
 
 
-def test_the_number_of_lashes_is_human() -> None:
-    strands = grown()
-    assert len(strands.points_mm) == lashes.UPPER_COUNT + lashes.LOWER_COUNT
-    assert 120 < lashes.UPPER_COUNT < 200
-    assert 60 < lashes.LOWER_COUNT < 100
+@pytest.fixture(scope="module")
+def hairs(lid: LidPatch) -> Strands:
+    return grow_lashes(lid, rng())[1]
 
 
-def test_lashes_root_on_their_lid_and_curl_away_from_the_pupil() -> None:
-    points = grown().points_mm
-    upper, lower = points[: lashes.UPPER_COUNT], points[lashes.UPPER_COUNT :]
-    assert upper[:, 0, 1].min() > lower[:, 0, 1].max() - 3.0
-    assert (upper[:, -1, 1] - upper[:, 0, 1]).mean() > 2.5
-    assert (lower[:, -1, 1] - lower[:, 0, 1]).mean() < -1.0
+def upper_and_lower(strands: Strands) -> tuple[Floats, Floats]:
+    return strands.points_mm[: UPPER.count], strands.points_mm[UPPER.count :]
+
+
+def lengths(points: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1))
+
+
+def turned(lid: LidPatch, angle_deg: float) -> tuple[LidPatch, Floats]:
+    """Turn a lid about the globe's horizontal axis, as a blink does; return it and the rotation."""
+    c, s = np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))
+    rotation = np.array([[1.0, 0, 0], [0, c, -s], [0, s, c]])
+    return replace(lid, points_mm=lid.points_mm @ rotation.T), rotation
+
+
+def test_there_are_as_many_lashes_as_on_human_lids(hairs: Strands) -> None:
+    upper, lower = upper_and_lower(hairs)
+    assert 130 <= len(upper) <= 170
+    assert 65 <= len(lower) <= 85
+
+
+def test_upper_lashes_are_8_to_12_mm_in_the_middle_and_shorter_beside_the_nose(
+    hairs: Strands,
+) -> None:
+    upper, lower = upper_and_lower(hairs)
+    x, length = upper[:, 0, 0], lengths(upper)
+    assert 8.0 < np.median(length[np.abs(x) < 6.0]) < 12.0
+    assert length.max() < 12.5
+    assert np.median(length[x < -9.0]) < 7.0
+    assert 5.5 < np.median(lengths(lower)) < 8.0
+
+
+def test_a_few_lashes_have_just_grown(hairs: Strands) -> None:
+    upper, _ = upper_and_lower(hairs)
+    centre = np.abs(upper[:, 0, 0]) < 6.0
+    short = lengths(upper)[centre] < 6.5
+    assert 0.02 < short.mean() < 0.25
+
+
+def test_upper_lashes_curl_up_and_lower_ones_hang_out(hairs: Strands) -> None:
+    upper, lower = upper_and_lower(hairs)
+    first, last = upper[:, 1] - upper[:, 0], upper[:, -1] - upper[:, -2]
+    elevation = [np.degrees(np.arctan2(d[:, 1], d[:, 2])) for d in (first, last)]
+    assert np.median(elevation[1] - elevation[0]) > 40.0
+    centre = np.abs(upper[:, 0, 0]) < 7.0
+    assert (upper[centre, -1, 1] - upper[centre, 0, 1]).mean() > 3.0
+    assert (lower[:, -1, 1] - lower[:, 0, 1]).mean() < -2.0
     for row in (upper, lower):
-        assert (row[:, -1, 2] - row[:, 0, 2]).mean() > 1.0
+        centre = np.abs(row[:, 0, 0]) < 7.0
+        assert (row[centre, -1, 2] - row[centre, 0, 2]).mean() > 2.0
 
 
-def test_no_lash_enters_the_globe() -> None:
-    points = grown().points_mm.reshape(-1, 3)
+def test_the_fan_opens_towards_temple_and_nose(hairs: Strands) -> None:
+    upper, _ = upper_and_lower(hairs)
+    way = upper[:, -1, 0] - upper[:, 0, 0]
+    assert way[upper[:, 0, 0] > 7].mean() > 2.0
+    assert way[upper[:, 0, 0] < -8].mean() < -1.0
+
+
+def test_lashes_root_in_rows_on_the_lids_outer_edge(lid: LidPatch, hairs: Strands) -> None:
+    rim = lid.points_mm[:, lid.rim_row]
+    roots = hairs.points_mm[:, 0]
+    distance = np.linalg.norm(roots[:, None] - rim[None], axis=2).min(axis=1)
+    assert distance.max() < 0.95
+    assert distance.std() > 0.05  # more than one row
+
+
+@pytest.mark.parametrize("angle_deg", [20.0, 45.0])
+def test_lashes_ride_on_a_lid_that_moves(lid: LidPatch, angle_deg: float) -> None:
+    moved, rotation = turned(lid, angle_deg)
+    for before, after in zip(grow_lashes(lid, rng()), grow_lashes(moved, rng()), strict=True):
+        np.testing.assert_allclose(after.points_mm, before.points_mm @ rotation.T, atol=1e-9)
+
+
+def test_the_frame_on_the_rim_is_square_and_looks_off_the_globe(lid: LidPatch) -> None:
+    frames = rim_frames(lid)
+    product = np.einsum("nik,njk->nij", frames, frames)
+    np.testing.assert_allclose(product, np.broadcast_to(np.eye(3), product.shape), atol=1e-9)
+    assert ((frames[:, 2] * lid.points_mm[:, lid.rim_row]).sum(axis=1) > 0).all()
+    middle = np.abs(lid.points_mm[:, lid.rim_row, 0]) < 6
+    up = frames[:, 1, 1] * np.where(lid.is_upper > 0.5, 1, -1)
+    assert up[middle].min() > 0.3
+
+
+@pytest.mark.parametrize("angle_deg", [0.0, 25.0])
+def test_no_lash_enters_the_globe(lid: LidPatch, angle_deg: float) -> None:
+    moved, _ = turned(lid, angle_deg)
+    points = grow_lashes(moved, rng())[1].points_mm.reshape(-1, 3)
     r = np.hypot(points[:, 0], points[:, 1])
-    over = points[r < 11, 2] - globe_height(r[r < 11])
-    assert over.min() > 0.0
+    front = (r < 11) & (points[:, 2] > 0)
+    assert (points[front, 2] - surface_height(r[front])[0]).min() > 0.3
+    assert np.linalg.norm(points, axis=1).min() > GLOBE_RADIUS_MM
 
 
-def test_outer_lashes_point_to_the_temple_and_inner_ones_to_the_nose() -> None:
-    points = grown().points_mm[: lashes.UPPER_COUNT]
-    way = points[:, -1, 0] - points[:, 0, 0]
-    assert way[points[:, 0, 0] > 6].mean() > 1.0
-    assert way[points[:, 0, 0] < -6].mean() < -0.5
+def test_tips_of_a_tuft_meet_but_roots_do_not(hairs: Strands) -> None:
+    upper, _ = upper_and_lower(hairs)
+    order = np.argsort(upper[:, 0, 0])
+    steps = np.linalg.norm(np.diff(upper[order], axis=0), axis=2)
+    assert (steps[:, -1] < 0.8).mean() > 0.08
+    assert (steps[:, -1] > 2.0).mean() > 0.2
 
 
-def test_the_same_seed_grows_the_same_hairs() -> None:
-    np.testing.assert_array_equal(grown().points_mm, grown().points_mm)
+def test_shadows_lie_at_the_roots_and_are_soft(lid: LidPatch) -> None:
+    shadows, hairs = grow_lashes(lid, rng())
+    assert shadows.shadow is not None
+    assert 0.05 < shadows.shadow.min() <= shadows.shadow.max() < 0.5
+    away = np.linalg.norm(shadows.points_mm[:, 0] - hairs.points_mm[:, 0], axis=1)
+    assert away.max() < 0.7
+    assert hairs.shadow is None
 
 
-def test_the_brow_lies_above_the_eye_close_to_the_skin() -> None:
-    socket = face_mesh().sockets[1]
-    strands = lashes.grow_brow(socket, rng())
-    flat = strands.points_mm.reshape(-1, 3)
-    assert flat[:, 1].min() > 8.0
-    height = flat[:, 2] - socket.height(flat[:, :2])
-    assert height.max() < 2.0
-    assert np.median(height) > 0.1
+def test_the_same_seed_grows_the_same_hairs(lid: LidPatch, hairs: Strands) -> None:
+    np.testing.assert_array_equal(grow_lashes(lid, rng())[1].points_mm, hairs.points_mm)
 
 
-def test_ribbons_have_two_vertices_a_point_and_name_their_side() -> None:
-    strands = lashes.Strands(
-        np.array([[[0.0, 0, 0], [0, 1, 0], [0, 2, 0]]]), np.array([0.1]), np.ones((1, 3))
-    )
-    rows, triangles = ribbons(strands, rng())
-    assert rows.shape == (6, 13)
-    assert sorted(rows[:, 6]) == [-1, -1, -1, 1, 1, 1]
-    np.testing.assert_allclose(rows[:, 7], 0.05)
-    assert triangles.shape == (4, 3)
-    assert triangles.max() == 5
+def test_both_eyes_obey_the_same_laws_but_are_no_mirror_images(hairs: Strands) -> None:
+    other = grow_lashes(face_mesh().lids[0], rng(4))[1]
+    assert np.abs(other.points_mm - hairs.points_mm).max() > 1.0
+    for ours, theirs in zip(upper_and_lower(hairs), upper_and_lower(other), strict=True):
+        assert lengths(theirs).mean() == pytest.approx(lengths(ours).mean(), rel=0.08)
+        np.testing.assert_allclose(theirs.mean(axis=0)[-1], ours.mean(axis=0)[-1], atol=1.2)
