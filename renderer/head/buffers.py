@@ -93,13 +93,25 @@ class CellMesh:
     Software renderers shade long runs of neighbouring vertices several times faster.
     """
 
-    def __init__(self, gl: moderngl.Context, rows: Floats, triangles: Indices) -> None:
-        """``rows`` (n, 14) are what STATIC names, of all the vertices that ``triangles`` count."""
+    def __init__(
+        self, gl: moderngl.Context, rows: Floats, triangles: Indices, *, turn: int | None = None
+    ) -> None:
+        """``rows`` (n, 14) are what STATIC names, of all the vertices that ``triangles`` count.
+
+        ``turn`` numbers a column that runs once around from 0 to 1, if there is one.
+        """
+        source = np.arange(len(rows))
+        if turn is not None:
+            source, triangles = unroll(rows[:, turn], triangles)
+            on = np.arange(len(source)) >= len(rows)
+            rows = rows[source]
+            rows[on, turn] += 1.0
         ordered, self.cells = sort_into_cells(rows[:, :3], triangles)
-        self._used, numbers = _by_first_use(ordered)
+        used, numbers = _by_first_use(ordered)
+        self._used = source[used]
         self._gl = gl
         self._index = gl.buffer(numbers.astype(np.int32).tobytes())
-        self._static = gl.buffer(rows[self._used].astype(np.float32).tobytes())
+        self._static = gl.buffer(rows[used].astype(np.float32).tobytes())
         self._light = gl.buffer(reserve=len(self._used) * 7 * 4)
         self._arrays: dict[int, moderngl.VertexArray] = {}
 
@@ -126,6 +138,21 @@ class CellMesh:
                 program.gl_program, [entry for entry in content if len(entry) > 2], self._index
             )
         return self._arrays[key]
+
+
+def unroll(turn: Floats, triangles: Indices) -> tuple[Indices, Indices]:
+    """Give triangles across the seam of a coordinate (n,) from 0 to 1 vertices of their own.
+
+    Return the original of every vertex, the new ones last, and the triangles renumbered. The new
+    ones have turned once more.
+    """
+    crosses = np.ptp(turn[triangles], axis=1) > 0.5
+    early = crosses[:, None] & (turn[triangles] < 0.5)
+    again = np.unique(triangles[early])
+    number = np.zeros(len(turn), dtype=np.int64)
+    number[again] = len(turn) + np.arange(len(again))
+    renumbered = np.where(early, number[triangles], triangles)
+    return np.concatenate([np.arange(len(turn)), again]), np.asarray(renumbered)
 
 
 def _by_first_use(triangles: Indices) -> tuple[Indices, Indices]:
@@ -155,19 +182,32 @@ class TilePyramid:
     """
 
     def __init__(self, gl: moderngl.Context, pixels: npt.NDArray[np.generic]) -> None:
-        """Halve (size, size, 4) uint8 pixels down to 1 x 1; size is a power of two."""
+        """Halve (height, width, 4) uint8 pixels until an edge is 1; both are powers of two."""
         self._levels = []
+        self._variances = []
         level = np.asarray(pixels, dtype=float)
         while True:
             data = np.round(level).astype(np.uint8)
             texture = gl.texture(data.shape[1::-1], 4, data.tobytes())
             texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
             self._levels.append(texture)
-            if len(level) == 1:
+            self._variances.append(float(level[..., :2].var(axis=(0, 1)).sum()) / 255**2)
+            if min(level.shape[:2]) == 1:
                 return
             level = level.reshape(len(level) // 2, 2, -1, 2, 4).mean(axis=(1, 3))
 
     def at(self, texels_per_pixel: float) -> moderngl.Texture:
         """Return the level whose texels come nearest to a pixel's size."""
+        return self._levels[self._level(texels_per_pixel)]
+
+    def lost_variance(self, texels_per_pixel: float) -> float:
+        """Return what that level has lost of the variance of red and green, which run 0 to 1.
+
+        Slopes that a level can no longer show roughen its highlights instead (Toksvig 2005; Olano
+        and Baker 2010, "LEAN mapping").
+        """
+        return self._variances[0] - self._variances[self._level(texels_per_pixel)]
+
+    def _level(self, texels_per_pixel: float) -> int:
         wanted = round(math.log2(max(texels_per_pixel, 1.0)))
-        return self._levels[min(wanted, len(self._levels) - 1)]
+        return min(wanted, len(self._levels) - 1)

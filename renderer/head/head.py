@@ -13,7 +13,6 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.cache import cached_array
 from renderer.camera import Matrix
 from renderer.clip import ClipSpec
 from renderer.eye.lids import LidRims
@@ -25,7 +24,7 @@ from renderer.head.hair import grow_hair, hair_cap
 from renderer.head.lashes import grow_lashes
 from renderer.head.lid_rims import lid_rims
 from renderer.head.light import light_strands, light_surfaces, open_sky
-from renderer.head.skin import TILE_MM, TILE_PX, pore_tile
+from renderer.head.skin_maps import SkinMaps
 from renderer.head.strands import StrandMesh, blending
 from renderer.head.surfaces import cap_surface, cloth_surface, skin_surfaces
 from renderer.light import Light
@@ -54,7 +53,7 @@ class Head:
             "hair": build_program(gl, "hair.vert", fragment="hair.frag"),
             "depth": build_program(gl, "depth.vert", fragment="depth.frag"),
         }
-        self._pores = TilePyramid(gl, cached_array("the skin's pores", pore_tile))
+        self._skin_maps = SkinMaps(gl, face_mesh())
         self._knit = TilePyramid(gl, knit_tile())
         skin = skin_surfaces(gl)
         self._surfaces = skin | {"cloth": cloth_surface(gl), "cap": cap_surface(gl)}
@@ -84,7 +83,7 @@ class Head:
         }
         clip = projection @ view_matrix
         skin, fabric = self._programs["skin"], self._programs["fabric"]
-        skin.set(**view, u_pores=self._pores.at(TILE_PX / TILE_MM / density))
+        skin.set(**view, **self._skin_maps.uniforms(density))
         close = distance < CLOSE_MM
         for mesh in [*(self._close if close else self._distant), self._mesh("cap")]:
             if mesh in self._corners:  # conjunctiva fades into the sclera, sample by sample

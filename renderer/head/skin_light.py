@@ -17,15 +17,16 @@ from renderer.body.makehuman import Floats, Indices
 from renderer.camera import eye_centre_mm
 from renderer.head.sky_visibility import Visible, directions
 from renderer.light import Sky
+from renderer.spherical_harmonics import sh_basis
 
 # How far light of each colour wanders in skin, standard deviation in mm, and the share of it that
 # does (after the diffusion profiles of d'Eon and Luebke 2007, GPU Gems 3, ch. 14).
-SCATTER_MM: Final = (1.2, 0.65, 0.45)
-SCATTERED: Final = (0.95, 0.85, 0.8)
+SCATTER_MM: Final = (1.25, 0.5, 0.32)
+SCATTERED: Final = (0.75, 0.7, 0.6)
 BOUNCE_ALBEDO: Final = (0.30, 0.20, 0.155)  # what the covered directions send: skin and sweater
 # Around the eyes they send more: nose and cheek catch over twice as much sun as typical light has,
 # and light goes to and fro between them.
-SOCKET_BOUNCE: Final = (1.10, 0.85, 0.72)
+SOCKET_BOUNCE: Final = (1.05, 0.90, 0.84)
 SOCKET_MM: Final = (22.0, 9.0)  # half widths of that region, across and up
 
 
@@ -40,19 +41,7 @@ class SkinLight:
 
 def sky_radiance(sky: Sky, towards: Floats) -> Floats:
     """Return the surroundings' radiance (n, 3) without the sun in unit directions (n, 3)."""
-    x, y, z = towards.T
-    basis = [
-        0.282095 * np.ones_like(x),
-        0.488603 * y,
-        0.488603 * z,
-        0.488603 * x,
-        1.092548 * x * y,
-        1.092548 * y * z,
-        0.315392 * (3 * z * z - 1),
-        1.092548 * x * z,
-        0.546274 * (x * x - y * y),
-    ]  # real spherical harmonics, Ramamoorthi and Hanrahan 2001, eq. 3
-    return np.asarray(np.maximum(np.stack(basis, axis=1) @ np.asarray(sky.ambient_sh), 0.0))
+    return np.asarray(np.maximum(sh_basis(towards) @ np.asarray(sky.ambient_sh), 0.0))
 
 
 def light_skin(

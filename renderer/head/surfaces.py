@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Final
 
 import moderngl
 import numpy as np
@@ -16,7 +17,10 @@ from renderer.head.face_mesh import SkinPart, face_mesh
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import hair_cap
 from renderer.head.lid_fit import ALONG, AROUND, grid_quads
+from renderer.head.lid_relief import lid_coordinates
 from renderer.head.skin import SCALP, detail_coordinates, paint
+
+AROUND_COLUMN: Final = 11  # of the rows: the way around the fissure in the lids' map
 
 
 @dataclass
@@ -52,16 +56,16 @@ def skin_surfaces(gl: moderngl.Context) -> dict[str, Surface]:
     surfaces = {}
     for name, part in parts.items():
         albedo, gloss = paint(part)
-        rows = _skin_rows(part, albedo)
-        is_patch = name.startswith("patch")
+        eye = int(name[-1]) if name.startswith("patch") else None
+        rows = _skin_rows(part, albedo, eye)
         surfaces[name] = Surface(
             part.points_mm,
             part.normals,
             part.triangles,
             gloss,
             part.wet,
-            CellMesh(gl, rows, part.triangles),
-            CellMesh(gl, rows, _thinned_patch(int(name[-1]))) if is_patch else None,
+            CellMesh(gl, rows, part.triangles, turn=None if eye is None else AROUND_COLUMN),
+            None if eye is None else CellMesh(gl, rows, _thinned_patch(eye), turn=AROUND_COLUMN),
         )
     return surfaces
 
@@ -96,10 +100,11 @@ def cap_surface(gl: moderngl.Context) -> Surface:
     )
 
 
-def _skin_rows(part: SkinPart, albedo: Floats) -> Floats:
+def _skin_rows(part: SkinPart, albedo: Floats, eye: int | None) -> Floats:
     detail = detail_coordinates(part.points_mm)
+    lid = np.zeros((len(detail), 2)) if eye is None else lid_coordinates(part, eye)
     sunk = part.points_mm - part.normals * np.reshape(part.sink_mm, (-1, 1))
-    return np.column_stack([sunk, part.normals, albedo, detail, part.along_mm, part.lid])
+    return np.column_stack([sunk, part.normals, albedo, detail, lid, part.lid])
 
 
 def _thinned_patch(eye: int) -> Indices:

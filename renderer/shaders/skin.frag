@@ -1,4 +1,5 @@
-// Provides: skin. Baked scattered light times paint, pores and crepe from one tile, two oily lobes.
+// Provides: skin. Baked scattered light times paint; relief from the face's tile and the lids' own
+// map, blood and melanin from a third picture; two oily lobes that the relief breaks up.
 
 #include "light.glsl"
 #include "specular.glsl"
@@ -10,42 +11,65 @@ in vec3 v_diffuse;
 in vec3 v_sheen;
 in vec4 v_surface;
 in vec4 v_detail;
-in float v_lid;
+in vec2 v_lid;
 
-uniform sampler2D u_pores;     // slope x, slope y, cavity, mottle; one level per view
+uniform sampler2D u_relief;    // slope x, slope y, openness, mottle; one level per view
+uniform sampler2D u_lids;      // slope x, slope y, openness, blood
+uniform sampler2D u_colour;    // blood, melanin, oil, strength of the relief
+uniform float u_colour_scale;  // from the relief's tiles to the colour's
+uniform float u_slope_range;   // slopes run from minus to plus this
+uniform vec2 u_lost_variance;  // of the slopes that the levels no longer show: face, lids
 
 out vec4 out_radiance;
 
-const vec3 SHARPNESS = vec3(0.35, 0.6, 0.7);  // share of light that does not scatter far
+// How much of a facet's own light leaves where it entered: red has wandered off (d'Eon and Luebke
+// 2007), so the relief shades blue more than red.
+const vec3 SHARPNESS = vec3(0.30, 0.62, 0.75);
+const vec3 CAVITY = vec3(0.22, 0.42, 0.48);  // light lost at the bottom of furrows; red bleeds in
+const vec3 BLOOD = vec3(0.10, 0.46, 0.42);   // absorption per unit of the maps
+const vec3 MELANIN = vec3(0.34, 0.50, 0.62);
+const float SKYLINE = 0.55;                  // how much more light a facet gets that tilts upwards
+const float FACET_M2 = 0.045, OILY_M2 = 0.0085;  // Beckmann's m^2 of the two lobes, relief apart
 
 void main() {
-    float gloss = v_surface.x, sun = v_surface.z, dry = 1.0 - v_surface.w;
+    // Samples at a silhouette extrapolate what the vertices say: keep shares within 0 to 1.
+    vec4 surface = clamp(v_surface, 0.0, 1.0);
+    float gloss = surface.x, sun = surface.z, dry = 1.0 - surface.w, lid = clamp(v_lid.x, 0.0, 1.0);
     vec3 n = normalize(v_normal);
-    vec3 t = vec3(n.z, 0.0, -n.x);
+    vec3 t = vec3(n.z, 0.0, -n.x) * inversesqrt(max(1.0 - n.y * n.y, 1e-4));
     vec3 b = cross(n, t);
 
-    vec4 pores = textureLod(u_pores, v_detail.xy, 0.0);
-    vec2 slope = (pores.xy - 0.5) * (0.95 - 0.3 * v_lid);
-    if (v_lid > 0.02) {
-        vec4 crepe = textureLod(u_pores, v_detail.zw * vec2(0.026, 0.08), 0.0);
-        slope += (crepe.xy - 0.5) * vec2(0.5, 1.3) * v_lid;
-    }
-    slope *= dry;
-    vec3 n_detail = normalize(n - slope.x * t - slope.y * b);
+    vec4 face = textureLod(u_relief, v_detail.xy, 0.0);
+    vec4 crepe = textureLod(u_lids, v_detail.zw, 0.0);
+    vec4 colour = textureLod(u_colour, v_detail.xy * u_colour_scale, 0.0) - 0.5;
+    float strength = (1.0 + 1.6 * colour.a) * (1.0 - lid);
+    float shown = clamp(v_lid.y, 0.0, 1.0) * dry;
+    vec2 slope = ((face.xy - 0.5) * strength + (crepe.xy - 0.5) * lid) * (2.0 * u_slope_range * shown);
+    float open = mix(face.z, crepe.z, lid);
+    open = 1.0 - dry * (1.0 - open);
+    vec2 lost = u_lost_variance + (1.0 - shown * shown) * 0.03;
+    float rough = 2.0 * mix(lost.x, lost.y, lid) * dry;  // Beckmann: m^2 is twice the variance
 
-    vec3 albedo = v_albedo * (1.0 + (pores.a - 0.5) * vec3(0.13, 0.20, 0.23) * dry);
-    albedo *= 1.0 - 0.2 * dry * (1.0 - pores.b);
+    float blood = colour.r + (crepe.a - 0.5) * lid, melanin = colour.g + 0.6 * (face.a - 0.5);
+    vec3 albedo = v_albedo * (1.0 - dry * (blood * BLOOD + melanin * MELANIN));
+    albedo *= 1.0 - CAVITY * (1.0 - open);
+
+    vec3 n_detail = normalize(n - slope.x * t - slope.y * b);
     float cosine = max(dot(n_detail, u_sun_direction), 0.0);
     float change = cosine - max(dot(n, u_sun_direction), 0.0);
-    vec3 diffuse = v_diffuse + u_sun_irradiance * (sun * change / PI) * SHARPNESS;
+    float upwards = n_detail.y - n.y;
+    vec3 diffuse = v_diffuse * (1.0 + SKYLINE * upwards * SHARPNESS)
+        + u_sun_irradiance * (sun * change / PI) * SHARPNESS;
 
     vec3 h = normalize(v_half);
-    float n_dot_h = dot(n_detail, h);
-    float lobes = 0.75 * gaussian_lobe(n_dot_h, mix(0.52, 0.42, gloss))
-        + 0.5 * gloss * gaussian_lobe(n_dot_h, mix(0.36, 0.27, gloss));
-    lobes *= pores.b;
+    float n_dot_h = dot(n_detail, h), oil = gloss * max(1.0 + 2.4 * colour.b, 0.0);
+    float facet_m2 = FACET_M2 + rough, oily_m2 = OILY_M2 + rough;
+    float lobes = (0.70 / PI) * exp2(2.885390 * (n_dot_h - 1.0) / facet_m2) / facet_m2
+        + (0.50 / PI) * oil * exp2(2.885390 * (n_dot_h - 1.0) / oily_m2) / oily_m2;
+    lobes *= open * open;
     if (dry < 0.99) lobes += (1.0 - dry) * min(gaussian_lobe(dot(n, h), 0.13), 300.0);
-    vec3 mirrored = u_sun_irradiance * (v_surface.y * cosine * lobes);
-    float cover = 1.0 - (1.0 - dry) * (1.0 - v_lid);
-    out_radiance = vec4(albedo * max(diffuse, vec3(0.0)) + mirrored + v_sheen, cover);
+    vec3 mirrored = u_sun_irradiance * (max(v_surface.y, 0.0) * cosine * lobes);
+    vec3 sheen = v_sheen * (open * max(1.0 + 2.0 * upwards, 0.0));
+    float cover = 1.0 - (1.0 - dry) * (1.0 - lid);
+    out_radiance = vec4(albedo * max(diffuse, vec3(0.0)) + mirrored + sheen, cover);
 }

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 from renderer.body.subdivide import subdivide
 from renderer.head import skin, skin_light
@@ -45,16 +44,6 @@ def test_the_wet_rim_is_redder_than_the_cheek() -> None:
     wet, dry = patch.wet > 0.9, (patch.lid < 0.1) & (patch.margin < 0.01)
     ratio = albedo[:, 1] / albedo[:, 0]
     assert ratio[wet].mean() < ratio[dry].mean() - 0.05
-
-
-def test_the_pore_tile_repeats_without_a_seam() -> None:
-    tile = skin.pore_tile().astype(float)
-    for axis in (0, 1):
-        inside = np.abs(np.diff(tile, axis=axis)).mean()
-        across = np.abs(np.take(tile, 0, axis) - np.take(tile, -1, axis)).mean()
-        assert across < 1.5 * inside
-    assert tile[..., :2].mean() == pytest.approx(127.5, abs=1.0)
-    assert tile[..., 3].mean() == pytest.approx(127.5, abs=3.0)
 
 
 def test_pores_are_not_smeared_on_the_flanks_of_the_nose() -> None:
