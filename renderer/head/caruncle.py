@@ -1,7 +1,7 @@
 """The pink bump in the inner corner of the eye, and the membrane that closes the outer corner.
 
-Pure numpy, patch space (see ``lid_fit``): both bridge what lies between the rims where they have
-left the globe.
+Pure numpy, patch space (see ``lid_pose``): both bridge what lies between the rims where they have
+left the globe, and go along with lids and gaze.
 """
 
 from __future__ import annotations
@@ -12,13 +12,17 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, globe_height, rim_curves
+from renderer.head.lid_pose import STRAIGHT, LidPose
+from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim_curves
+from renderer.head.lid_shell import on_globe
 
-CARUNCLE_END_MM: Final = -8.6  # towards the pupil: under the globe's surface from here on
-COVER_MM: Final = (-9.2, -11.0)  # the conjunctiva fades in over the sclera between these
+CARUNCLE_END_MM: Final = -8.0  # towards the pupil: under the globe's surface from here on
+COVER_MM: Final = (-8.6, -11.4)  # the conjunctiva fades in over the sclera between these
 PLICA_MM: Final = -12.1  # the fold, a crescent open towards the pupil
-BUMP_MM: Final = (-14.2, 1.45)  # the caruncle's middle and half width along x
-MEMBRANE_START_MM: Final = 10.2
+BUMP_MM: Final = (-14.3, 1.45)  # the caruncle's middle and half width along x
+MEMBRANE_START_MM: Final = 9.6
+DRAWN: Final = (0.28, 0.12)  # share of the cornea's way to nose and temple that drags the fold
+FULL_OPENING_MM: Final = 3.0  # of the lids, at which the caruncle stands out fully
 ROWS: Final = 52
 COLUMNS: Final = 28
 
@@ -38,23 +42,28 @@ class Corner:
     cover: Floats
 
 
-def caruncle() -> Corner:
+def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     """Return the inner corner: conjunctiva off the sclera, the plica's fold, the caruncle."""
-    points, _, b = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM)
-    x, y, z = (points[..., axis] for axis in range(3))
-    crescent = x + 0.9 * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
-    hump = np.exp(-(((x - BUMP_MM[0]) / BUMP_MM[1]) ** 2) - ((b - 0.47) / 0.30) ** 2)
-    plica = np.exp(-(((crescent - PLICA_MM) / 0.42) ** 2)) * np.sin(np.pi * b)
+    drawn = _drawn_mm(pose)
+    sheet = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM + drawn, pose)
+    b = sheet.upwards
+    x, y, z = (sheet.points_mm[..., axis] for axis in range(3))
+    room = _ease(sheet.opening_mm / FULL_OPENING_MM)
+    crescent = x - drawn + 0.9 * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
+    middle = BUMP_MM[0] + 0.3 * drawn
+    hump = room * np.exp(-(((x - middle) / BUMP_MM[1]) ** 2) - ((b - 0.47) / 0.30) ** 2)
+    plica = room * np.exp(-(((crescent - PLICA_MM) / 0.42) ** 2)) * np.sin(np.pi * b)
     sag = 0.75 * np.sin(np.pi * b) * _ease((x - MEDIAL_MM[0]) / 1.5)
     height = z - sag + 1.25 * hump + 0.35 * plica + _lumps(x, y) * np.sqrt(hump)
-    globe = globe_height(np.minimum(np.hypot(x, y), 11.2))
+    globe = on_globe(sheet.points_mm[..., :2], pose)
     near = _ease((crescent + 12.6) / 2.0)
-    under = _ease((crescent + 9.3) / 0.6)
-    points[..., 2] = height * (1 - near) + (globe + 0.09 + 0.25 * plica - 0.6 * under) * near
+    under = _ease((crescent + 8.8) / 0.6)
+    over = np.minimum(0.09 + 0.25 * plica, 0.05 + 0.2 * sheet.opening_mm)
+    sheet.points_mm[..., 2] = height * (1 - near) + (globe + over - 0.6 * under) * near
     cover = _ease((COVER_MM[0] - crescent) / (COVER_MM[0] - COVER_MM[1]))
-    cover = np.maximum(cover, _beside_globe(x, y))
+    cover = np.maximum(cover, _beside_globe(sheet.points_mm))
     return Corner(
-        points.reshape(-1, 3),
+        sheet.points_mm.reshape(-1, 3),
         _quads(),
         np.clip(1.25 * hump, 0, 1).ravel(),
         (0.95 * _ease((crescent + 12.7) / 2.4)).ravel(),
@@ -62,9 +71,15 @@ def caruncle() -> Corner:
     )
 
 
-def _beside_globe(x: Floats, y: Floats) -> Floats:
+def _drawn_mm(pose: LidPose) -> float:
+    """Return how far the turning globe drags the plica's fold towards the temple."""
+    sideways = pose.corneal_shift_mm[0]
+    return sideways * (DRAWN[0] if sideways < 0 else DRAWN[1])
+
+
+def _beside_globe(points: Floats) -> Floats:
     """Return 1 where no globe would be seen through the sheet, 0 well inside its outline."""
-    return _ease((np.hypot(x, y) - 10.75) / 0.4)
+    return _ease((np.hypot(points[..., 0], points[..., 1]) - 10.75) / 0.4)
 
 
 def _lumps(x: Floats, y: Floats) -> Floats:
@@ -74,37 +89,50 @@ def _lumps(x: Floats, y: Floats) -> Floats:
     return np.asarray(0.11 * lobes + 0.045 * grains)
 
 
-def outer_membrane() -> Corner:
+def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
     """Return the conjunctiva in the outer corner."""
-    points, a, b = _sheet(LATERAL_MM[0], MEMBRANE_START_MM)
-    globe = globe_height(np.minimum(np.hypot(points[..., 0], points[..., 1]), 11.2))
-    near, under = _ease(a / 0.6), _ease((a - 0.6) / 0.4)
-    sheet = points[..., 2] - 0.4 * np.sin(np.pi * b)
-    points[..., 2] = sheet * (1 - near) + (globe + 0.08 - 0.55 * under) * near
+    sheet = _sheet(LATERAL_MM[0], MEMBRANE_START_MM, pose)
+    a, b = sheet.inwards, sheet.upwards
+    globe = on_globe(sheet.points_mm[..., :2], pose)
+    near, under = _ease(a / 0.75), _ease((a - 0.75) / 0.25)
+    hollow = sheet.points_mm[..., 2] - 0.35 * np.sin(np.pi * b) * _ease(sheet.opening_mm)
+    sheet.points_mm[..., 2] = hollow * (1 - near) + (globe + 0.05 - 0.5 * under) * near
     return Corner(
-        points.reshape(-1, 3),
+        sheet.points_mm.reshape(-1, 3),
         _quads()[:, ::-1],
         np.zeros(a.size),
-        (0.9 * _ease(a / 0.6)).ravel(),
-        np.maximum(
-            1.0 - _ease((a - 0.15) / 0.5), _beside_globe(points[..., 0], points[..., 1])
-        ).ravel(),
+        (0.9 * _ease(a / 0.5)).ravel(),
+        np.maximum(1.0 - _ease((a - 0.1) / 0.7), _beside_globe(sheet.points_mm)).ravel(),
     )
 
 
-def _sheet(corner_x: float, inner_x: float) -> tuple[Floats, Floats, Floats]:
-    """Span a sheet between the rims from a canthus inwards; a runs inwards, b upwards, 0 to 1."""
+@dataclass(frozen=True)
+class _Sheet:
+    """A grid between the rims, (ROWS, COLUMNS): points in mm, places from canthus inwards and
+
+    from lower to upper rim, 0 to 1, and how far apart the rims are there.
+    """
+
+    points_mm: Floats
+    inwards: Floats
+    upwards: Floats
+    opening_mm: Floats
+
+
+def _sheet(corner_x: float, inner_x: float, pose: LidPose) -> _Sheet:
+    """Span a sheet between the rims from a canthus inwards."""
     a, b = np.meshgrid(np.linspace(0, 1, ROWS), np.linspace(-0.03, 1.04, COLUMNS), indexing="ij")
     # The inner edge is a crescent around the pupil.
     crescent = inner_x + np.sign(corner_x) * 1.2 * (2 * np.clip(b, 0, 1) - 1) ** 2
     x = corner_x + (crescent - corner_x) * a
     upper, lower = (
         [np.interp(x, curve[:, 0], curve[:, axis]) for axis in (1, 2)]
-        for curve in rim_curves(samples=513)
+        for curve in rim_curves(pose, samples=513)
     )
     y = lower[0] * (1 - b) + upper[0] * b
     z = lower[1] * (1 - b) + upper[1] * b
-    return np.stack([x, y, z], axis=-1), a, np.clip(b, 0, 1)
+    opening = np.maximum(upper[0] - lower[0], 0.0)
+    return _Sheet(np.stack([x, y, z], axis=-1), a, np.clip(b, 0, 1), opening)
 
 
 def _ease(x: Floats) -> Floats:

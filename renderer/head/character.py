@@ -18,7 +18,7 @@ from renderer.camera import INTEROCULAR_MM
 
 # MakeHuman's globes have 15 mm radius, ours 11.75: her lids meet ours when the head steps back.
 SET_BACK_MM: Final = 4.9
-BROW_MM: Final = 3.6
+BROW_MM: Final = 4.8
 PHENOTYPE: Final = {"gender": 0.1, "age": 0.56, "muscle": 0.5, "weight": 0.47, "proportions": 0.7}
 RACES: Final = {"caucasian": 0.75, "asian": 0.13, "african": 0.12}
 # Away from the average that MakeHuman starts from: an average of faces looks like a doll.
@@ -67,7 +67,7 @@ def figure() -> Figure:
 def _brow_ridge(vertices: Floats) -> Floats:
     """Return by how many mm to push back the brow, which hangs far over MakeHuman's eyes."""
     x, y, z = vertices.T
-    sideways = np.exp(-(((np.abs(x) - 27.0) / 26.0) ** 2))
+    sideways = np.exp(-(((np.abs(x) - 24.0) / 26.0) ** 2))
     return np.where(z > 0.0, BROW_MM * sideways * np.exp(-(((y - 20.0) / 10.0) ** 2)), 0.0)
 
 

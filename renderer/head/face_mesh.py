@@ -20,6 +20,7 @@ from renderer.camera import eye_centre_mm
 from renderer.head import lid_fit
 from renderer.head.caruncle import caruncle, outer_membrane
 from renderer.head.character import SET_BACK_MM, Figure, figure
+from renderer.head.lid_pose import STRAIGHT, LidPose
 
 FINE_BOX_MM: Final = ((-86.0, -52.0, -62.0), (86.0, 50.0, 60.0))  # what close views can show
 LOWEST_MM: Final = -215.0  # below it the collar hides the neck
@@ -90,33 +91,61 @@ def seam(patch: SkinPart, face: SkinPart) -> Seam:
     return Seam(weight, near, shares / shares.sum(axis=1, keepdims=True))
 
 
+LidPoses = tuple[LidPose, LidPose]
+BOTH_STRAIGHT: Final[LidPoses] = (STRAIGHT, STRAIGHT)
+
+
+@dataclass(frozen=True)
+class _Face:
+    """What the lids do not move."""
+
+    fine: SkinPart
+    rest: SkinPart
+    coarse: SkinPart
+    sockets: tuple[lid_fit.Socket, lid_fit.Socket]
+
+
+@functools.lru_cache(maxsize=8)
+def face_mesh(poses: LidPoses = BOTH_STRAIGHT) -> FaceMesh:
+    """Build the skin of the main character with the lids of the viewer's left and right eye."""
+    face = _face()
+    lids = (
+        lid_fit.fit_lids(face.sockets[0], poses[0]),
+        lid_fit.fit_lids(face.sockets[1], poses[1]),
+    )
+    patches = [_patch(lids[eye], eye) for eye in (0, 1)]
+    patches = [
+        replace(
+            patch, normals=_unit(seam(patch, face.fine).blend(patch.normals, face.fine.normals))
+        )
+        for patch in patches
+    ]
+    return FaceMesh(
+        fine=face.fine,
+        rest=face.rest,
+        coarse=face.coarse,
+        patches=(patches[0], patches[1]),
+        corners=(_corners(0, poses[0]), _corners(1, poses[1])),
+        lids=lids,
+        sockets=face.sockets,
+    )
+
+
 @functools.cache
-def face_mesh() -> FaceMesh:
-    """Build the skin of the main character."""
-    body = figure()
-    vertices, quads = _head_cage(body)
+def _face() -> _Face:
+    vertices, quads = _head_cage(figure())
     level1, quads1 = subdivide(vertices, quads)
     level2, quads2 = subdivide(level1, quads1)
     sockets = (_socket(level2, quads2, 0), _socket(level2, quads2, 1))
-    lids = (lid_fit.fit_lids(sockets[0]), lid_fit.fit_lids(sockets[1]))
     normals1 = vertex_normals(level1[:, :3], triangles_of(quads1))
     normals2 = vertex_normals(level2[:, :3], triangles_of(quads2))
     quads1 = quads1[~_in_eye(level1, quads1)]
     quads2 = quads2[~_in_eye(level2, quads2)]
     near1, near2 = _in_box(level1, quads1, inset_mm=6.0), _in_box(level2, quads2)
-    fine = _part(level2, quads2[near2], normals=normals2)
-    patches = [_patch(lids[eye], eye) for eye in (0, 1)]
-    patches = [
-        replace(patch, normals=_unit(seam(patch, fine).blend(patch.normals, fine.normals)))
-        for patch in patches
-    ]
-    return FaceMesh(
-        fine=fine,
+    return _Face(
+        fine=_part(level2, quads2[near2], normals=normals2),
         rest=_part(level1, quads1[~near1], normals=normals1),
         coarse=_part(level1, quads1, normals=normals1),
-        patches=(patches[0], patches[1]),
-        corners=(_corners(0), _corners(1)),
-        lids=lids,
         sockets=sockets,
     )
 
@@ -257,8 +286,8 @@ def _ramp(x: Floats, start: Floats, end: Floats) -> Floats:
     return np.asarray(t * t * (3 - 2 * t))
 
 
-def _corners(eye: int) -> SkinPart:
-    inner, outer = caruncle(), outer_membrane()
+def _corners(eye: int, pose: LidPose) -> SkinPart:
+    inner, outer = caruncle(pose), outer_membrane(pose)
     points = to_world(np.concatenate([inner.points_mm, outer.points_mm]), eye)
     triangles = triangles_of(np.concatenate([inner.quads, outer.quads + len(inner.points_mm)]))
     if eye == 0:

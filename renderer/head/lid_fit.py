@@ -1,13 +1,13 @@
-"""Eyelids fitted to our globe: a fine skin patch from the rims to the face around them.
+"""Eyelids fitted to our globe in any pose: a fine skin patch from the rims to the face around them.
 
-Pure numpy. MakeHuman's lids enclose a globe of 15 mm radius; here they are replaced by lids that
-are modelled anatomically, ring by ring around the fissure, and melt into the face's surface.
-Patch space is eye space with the temple at +x, whichever eye it is: millimetres, origin at the
-globe's centre, +z straight ahead, +y up.
+Pure numpy, patch space (see ``lid_pose``). MakeHuman's lids enclose a globe of 15 mm radius; here
+they are replaced by lids that are modelled anatomically, ring by ring around the fissure, and melt
+into the face's surface. A column of the rings keeps its place on the lid while the lid moves.
 """
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Final
 
@@ -15,16 +15,21 @@ import numpy as np
 from scipy.interpolate import RBFInterpolator
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim_curves, smooth_step
+from renderer.head.lid_pose import STRAIGHT, LidPose
+from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim, rim_shares, smooth_step
+from renderer.head.lid_skin import Columns, lower_skin, upper_skin
 
-TUCK_MM: Final = 11.0  # radius of the patch's innermost ring
+TUCK_MM: Final = 3.5  # from the inner edge back to the patch's innermost ring
 MARGIN_MM: Final = 1.75  # lid thickness at the rim
 MARGIN_TURN: Final = (0.5, 0.1)  # of the margin against the globe's normal, lower and upper lid
+MEETING_MM: Final = 3.5  # lids that are nearer to each other turn their margins face to face
 OUTLINE_MM: Final = (24.5, 22.5, 17.5, 17.0)  # patch ends: temple, nose, up, down of (0, 0)
-# Lift in mm of the outermost rings over the face, and how far they obey.
-ENDING: Final = ((0.0, 0.6), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, 1.0))
-AROUND: Final = 168
-ALONG: Final = 46
+ENDING: Final = (0.0, 0.9, 1.8, 2.7)  # of the last rings, in mm beyond the outline
+SETTLED: Final = (0.25, 0.6, 0.9, 1.0, 1.0, 1.0, 1.0)  # how far the last rings obey the face
+AROUND: Final = 176
+ALONG: Final = 48
+# Where the face gives way for the canthi: place, height of the skin there, reach, all in mm.
+CANTHUS_PITS: Final = (((-17.4, -2.2), 8.0, 7.5), ((13.4, 0.5), 5.6, 7.0))
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,7 @@ class LidPatch:
     is_upper: Floats
     across_mm: Floats
     rim_row: int
+    pose: LidPose = STRAIGHT
 
 
 class Socket:
@@ -64,71 +70,137 @@ def _thinned(points: Floats, *, spacing_mm: float) -> Floats:
     return np.asarray(points[np.sort(first)])
 
 
-def fit_lids(socket: Socket) -> LidPatch:
+def fit_lids(socket: Socket, pose: LidPose = STRAIGHT) -> LidPatch:
     """Build the patch of one eye on its socket."""
-    inner, is_upper = _loop()
-    controls, rim_control = _control_net(inner, is_upper, socket)
+    controls, rim_control = _control_net(socket, pose)
     basis, places = _spline_basis(controls.shape[1], ALONG)
     points = np.einsum("wk,tkc->twc", basis, controls)
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
     across = np.concatenate([np.zeros((AROUND, 1)), np.cumsum(steps, axis=1)], axis=1)
     rim_row = int(np.argmin(np.abs(places - rim_control)))
-    return LidPatch(points, is_upper, across - across[:, 2:3], rim_row)
+    return LidPatch(points, upper_share(), across - across[:, 2:3], rim_row, pose)
 
 
-def _loop() -> tuple[Floats, Floats]:
-    """Return the inner edge, evenly spaced, from the temple over the upper lid and back."""
-    upper, lower = rim_curves(samples=513)
-    ring = np.concatenate([upper[::-1], lower[1:]])
-    lid = np.concatenate([np.ones(len(upper)), np.zeros(len(lower) - 1)])
-    lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(ring, axis=0), axis=1))])
-    wanted = (np.arange(AROUND) / AROUND) * lengths[-1]
-    points = np.column_stack([np.interp(wanted, lengths, ring[:, axis]) for axis in range(3)])
-    is_upper = np.interp(wanted, lengths, lid)
-    for _ in range(10):  # soften the change of lid over some 2 mm at the canthi
+def inner_edge(pose: LidPose) -> Floats:
+    """Return the rims as one ring (around, 3) from the temple over the upper lid and back."""
+    upper = rim(_column_shares(is_upper=True), pose, is_upper=True)
+    lower = rim(_column_shares(is_upper=False), pose, is_upper=False)
+    ring = np.concatenate([upper, lower])
+    near = np.exp(-(((ring[:, :1] - LATERAL_MM[0]) / 0.7) ** 2))  # no edge in the outer corner
+    return np.asarray(ring + near * (_blur_ring(ring, samples=1.5) - ring))
+
+
+def upper_share() -> Floats:
+    """Return how much each column belongs to the upper lid, 1 to 0, soft at the canthi."""
+    is_upper = np.repeat([1.0, 0.0], AROUND // 2)
+    for _ in range(14):
         is_upper = (np.roll(is_upper, 1) + 2 * is_upper + np.roll(is_upper, -1)) / 4
-    return points, is_upper
+    return is_upper
 
 
-def _control_net(inner: Floats, is_upper: Floats, socket: Socket) -> tuple[Floats, int]:
+@functools.cache
+def _column_shares(*, is_upper: bool) -> Floats:
+    """Return the columns' places on one rim: closer at the canthi, where the ring turns."""
+    shares = rim_shares(801)
+    xy = rim(shares, STRAIGHT, is_upper=is_upper)[:, :2]
+    middles = (xy[1:] + xy[:-1]) / 2
+    canthus = np.minimum(*(np.linalg.norm(middles - at, axis=1) for at in (LATERAL_MM, MEDIAL_MM)))
+    steps = np.linalg.norm(np.diff(xy, axis=0), axis=1) * (
+        1 + 1.6 * np.exp(-((canthus / 1.8) ** 2))
+    )
+    way = np.concatenate([[0.0], np.cumsum(steps)]) / steps.sum()
+    wanted = np.arange(AROUND // 2) / (AROUND // 2)
+    return np.asarray(np.interp(1 - wanted if is_upper else wanted, way, shares))
+
+
+def _control_net(socket: Socket, pose: LidPose) -> tuple[Floats, int]:
     """Return the spline's control points (around, controls, 3) and the outer edge's control."""
-    xy = inner[:, :2]
-    outward = _outward(xy)
-    canthus = _canthus_nearness(xy)
-    up, one = is_upper[:, None], np.ones(AROUND)
-    radial = inner / np.linalg.norm(inner, axis=1, keepdims=True)
-    margin = np.concatenate([outward * 0.35, np.full((AROUND, 1), 0.85)], axis=1)
-    # The upper lid's margin looks down: from the front it hides behind the lid's outer edge.
-    rise = MARGIN_TURN[0] * (1 - is_upper) + MARGIN_TURN[1] * is_upper
-    turned = radial * np.column_stack([0.65 * one, rise, one])
-    margin = margin * canthus[:, None] + turned * (1 - canthus[:, None])
-    margin /= np.linalg.norm(margin, axis=1, keepdims=True)
-    thick = MARGIN_MM * (1 - 0.45 * canthus) * (1.0 - 0.1 * is_upper)
-    edge = inner + margin * thick[:, None]
-    # The first ring lies inside the globe: no light shines between lid and globe.
-    # Off the globe, at the canthi, it runs straight back under the conjunctiva.
-    off = np.clip(np.linalg.norm(inner, axis=1, keepdims=True) - 12.5, 0.0, 1.0)
-    tuck = radial * TUCK_MM * (1 - off) + (inner - [0.0, 0.0, 3.5]) * off
-    rows = [tuck, inner - radial * 0.15]
-    rows += [inner + margin * (thick * share)[:, None] for share in (0.12, 0.45, 0.8)]
-    rim_control = len(rows)
-    rows.append(edge + np.concatenate([outward * 0.1, np.zeros((AROUND, 1))], axis=1))
-    upper_rows = _upper_skin(edge, outward, canthus, socket)
-    lower_rows = _lower_skin(edge, outward, canthus, socket)
-    rows += [u * up + low * (1 - up) for u, low in zip(upper_rows, lower_rows, strict=True)]
+    straight = inner_edge(STRAIGHT)
+    inner = inner_edge(pose)
+    is_upper = upper_share()
+    outward = _outward(straight[:, :2])
+    canthus = _canthus_nearness(straight[:, :2])
+    rows = _margin_rows(inner, outward, canthus=canthus)
+    rim_control = len(rows) - 1
+    columns = Columns(
+        edge=rows[-1],
+        outward=outward,
+        canthus=canthus,
+        lowered_mm=straight[:, 1] - inner[:, 1],
+        end_mm=_end_distance(rows[-1], outward),
+        pose=pose,
+        face=_Face(socket).height,
+    )
+    upper, lower = upper_skin(columns), lower_skin(columns)
+    rows += [
+        u * is_upper[:, None] + low * (1 - is_upper[:, None])
+        for u, low in zip(upper, lower, strict=True)
+    ]
+    rows += [columns.on_face(columns.end_mm + beyond) for beyond in ENDING]
     net = np.stack(rows, axis=1)
     for row in range(rim_control + 1, net.shape[1]):
         # Rings lose the rim's corners on their way out.
-        net[:, row] = _blur_ring(net[:, row], samples=min(1.0 + 0.9 * (row - rim_control), 9.0))
-    _settle(net, socket)
+        net[:, row] = _blur_ring(net[:, row], samples=min(1.0 + 0.6 * (row - rim_control), 8.0))
+    for row, share in enumerate(SETTLED, start=net.shape[1] - len(SETTLED)):
+        net[:, row, 2] += share * (socket.height(net[:, row, :2]) - net[:, row, 2])
     return net, rim_control
 
 
-def _settle(net: Floats, socket: Socket) -> None:
-    """Lay the outermost controls back on the face after smoothing."""
-    for row, (lift, share) in enumerate(ENDING, start=net.shape[1] - len(ENDING)):
-        height = socket.height(net[:, row, :2]) + lift
-        net[:, row, 2] += (height - net[:, row, 2]) * share
+def _margin_rows(inner: Floats, outward: Floats, *, canthus: Floats) -> list[Floats]:
+    """Return the rings from inside the globe over the margin to the lid's outer edge."""
+    radial = inner / np.linalg.norm(inner, axis=1, keepdims=True)
+    margin = _margin_direction(inner, radial, outward=outward, canthus=canthus)
+    thick = MARGIN_MM * (1 - 0.45 * canthus) * (1.0 - 0.1 * upper_share())
+    edge = inner + margin * thick[:, None]
+    # The first rings run straight back into the globe, or at the canthi under the conjunctiva: no
+    # light shines between lid and globe, and from the front nothing of them shows.
+    back = np.array([0.0, 0.0, 1.0])
+    rows = [inner - TUCK_MM * back, inner - 0.15 * (0.5 * radial + 0.5 * back)]
+    rows += [inner + margin * (thick * share)[:, None] for share in (0.12, 0.45, 0.8)]
+    rows.append(edge + np.column_stack([outward * 0.1, np.zeros(AROUND)]))
+    return rows
+
+
+def _margin_direction(inner: Floats, radial: Floats, *, outward: Floats, canthus: Floats) -> Floats:
+    """Return where the margins face, (around, 3): forwards, the lower up, the upper down."""
+    is_upper, one = upper_share(), np.ones(AROUND)
+    apart = smooth_step(_opening(inner) / MEETING_MM)
+    # The upper lid's margin looks down: from the front it hides behind the lid's outer edge.
+    rise = MARGIN_TURN[0] * (1 - is_upper) + MARGIN_TURN[1] * is_upper
+    rise = 1.0 + (rise - 1.0) * apart
+    turned = radial * np.column_stack([0.65 * one, rise, one])
+    corner = np.column_stack([outward * (0.35 * apart)[:, None], 0.85 * one])
+    margin = corner * canthus[:, None] + turned * (1 - canthus[:, None])
+    margin = _blur_ring(margin, samples=2.0)
+    return np.asarray(margin / np.linalg.norm(margin, axis=1, keepdims=True))
+
+
+def _opening(ring: Floats) -> Floats:
+    """Return how far apart the rims are at each column, in mm."""
+    half = AROUND // 2
+    upper, lower = ring[half - 1 :: -1], ring[half:]
+    x = ring[:, 0]
+    height = np.interp(x, *upper[:, :2].T) - np.interp(x, *lower[:, :2].T)
+    return np.asarray(np.maximum(height, 0.0))
+
+
+class _Face:
+    """The socket's surface, drawn back to where the lids meet at the canthi."""
+
+    def __init__(self, socket: Socket) -> None:
+        self._socket = socket
+        self._pits = []
+        for (x, y), z, reach in CANTHUS_PITS:
+            surplus = float(socket.height(np.array([x, y]))) - z
+            self._pits.append((x, y, max(surplus, 0.0), reach))
+
+    def height(self, xy: Floats) -> Floats:
+        """Return z (...,) at points (..., 2)."""
+        z = self._socket.height(xy)
+        for x, y, depth, reach in self._pits:
+            r2 = ((xy[..., 0] - x) ** 2 + (xy[..., 1] - y) ** 2) / reach**2
+            z = z - depth * np.clip(1 - r2, 0, 1) ** 2
+        return z
 
 
 def _blur_ring(values: Floats, *, samples: float) -> Floats:
@@ -158,106 +230,20 @@ def _outline(xy: Floats) -> Floats:
 def _canthus_nearness(xy: Floats) -> Floats:
     """Return 1 at the canthi falling to 0 some 5 mm from them."""
     nearest = np.minimum(
-        np.linalg.norm(xy - np.array(LATERAL_MM), axis=1) / 4.5,
-        np.linalg.norm(xy - np.array(MEDIAL_MM), axis=1) / 5.5,
+        np.linalg.norm(xy - np.array(LATERAL_MM), axis=1) / 4.0,
+        np.linalg.norm(xy - np.array(MEDIAL_MM), axis=1) / 7.5,
     )
     return 1.0 - smooth_step(nearest)
 
 
-def _skin_point(edge: Floats, outward: Floats, distance: Floats, lift: Floats) -> Floats:
-    """Return points on the pretarsal skin: the globe's curvature, continued from the edge."""
-    xy = edge[:, :2] + outward * distance[:, None]
-    radius = np.linalg.norm(edge, axis=1)
-    falls = np.sqrt(np.maximum(radius**2 - (xy**2).sum(1), 9.0))
-    starts = np.sqrt(np.maximum(radius**2 - (edge[:, :2] ** 2).sum(1), 9.0))
-    return np.column_stack([xy, edge[:, 2] + falls - starts + lift])
-
-
-def _face_point(
-    edge: Floats, outward: Floats, distance: Floats, *, socket: Socket, lift: Floats
-) -> Floats:
-    xy = edge[:, :2] + outward * distance[:, None]
-    return np.column_stack([xy, socket.height(xy) + lift])
-
-
-def _upper_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) -> list[Floats]:
-    """Lashes' edge, tarsal platform, crease, overhanging fold, then the face up to the brow."""
-    end = np.linalg.norm(_end_points(edge, outward) - edge[:, :2], axis=1)
-    x = edge[:, 0]
-    one = np.ones(len(edge))
-    platform = (2.7 - 0.8 * smooth_step((x - 2.0) / 10.0) - 0.7 * smooth_step((-x - 8.0) / 8.0)) * (
-        1 - 0.45 * canthus
-    )
-    fold = 2.1 * (1 - 0.7 * canthus)
-    rows = [_skin_point(edge, outward, d * one, -0.02 * one) for d in (0.35, 0.8)]
-    rows += [_skin_point(edge, outward, platform * share, 0.10 * one) for share in (0.5, 0.78)]
-    rows.append(_skin_point(edge, outward, platform * 0.97, -0.15 * one))
-    crease = _skin_point(edge, outward, platform * 1.05, -0.40 * one)
-    rows.append(crease)
-    lip = crease.copy()
-    lip[:, :2] -= outward * (0.10 * fold)[:, None]
-    rows.append(lip + np.column_stack([0 * x, 0 * x, 0.55 * fold]))
-    rows.append(lip + np.column_stack([*(outward * 0.35).T, 1.0 * fold]))
-    after = crease + np.column_stack([*(outward * 1.4).T, 1.25 * fold])
-    rows.append(after)
-    rest = end - platform * 1.05
-    for share, bulge in ((0.2, 2.2), (0.36, 2.5), (0.53, 1.6), (0.7, 0.7), (0.87, 0.1)):
-        face = _face_point(
-            edge,
-            outward,
-            platform * 1.05 + rest * share,
-            socket=socket,
-            lift=bulge * (1 - canthus),
-        )
-        # A gentle slope up to the brow: a steep one would hang in its own shadow.
-        way = min((share + 0.06) / 0.96, 1.0)
-        blend = (1 - (1 - way) ** 1.6) * one
-        local = after[:, 2] + (face[:, 2] - after[:, 2]) * blend
-        face[:, 2] = local
-        rows.append(face)
-    return rows + _ending(edge, outward, end, socket)
-
-
-def _lower_skin(edge: Floats, outward: Floats, canthus: Floats, socket: Socket) -> list[Floats]:
-    """Lashes' edge, the roll of the muscle beneath, a shallow furrow, then the cheek."""
-    end = np.linalg.norm(_end_points(edge, outward) - edge[:, :2], axis=1)
-    one = np.ones(len(edge))
-    away = 1 - 0.8 * canthus
-    rows = [
-        _skin_point(edge, outward, d * one, lift * one) for d, lift in ((0.35, 0.0), (0.8, 0.08))
-    ]
-    near = ((1.5, 0.3), (2.3, 0.42), (3.2, 0.48), (4.1, 0.48), (5.0, 0.45), (5.9, 0.42), (6.9, 0.4))
-    squeeze = np.minimum(0.45 + 0.55 * away, 0.5 * end / 6.9)
-    for distance, lift in near:
-        d = distance * squeeze
-        skin = _skin_point(edge, outward, d, lift * away)
-        face = _face_point(edge, outward, d, socket=socket, lift=lift * away)
-        blend = smooth_step((distance * (1 + 2.0 * canthus) - 0.5) / 7.0)[:, None]
-        rows.append(skin * (1 - blend) + face * blend)
-    first = 6.9 * squeeze
-    for share, lift in ((0.18, 0.35), (0.36, 0.25), (0.54, 0.12), (0.72, 0.02), (0.88, 0.0)):
-        d = first + (end - first) * share
-        rows.append(_face_point(edge, outward, d, socket=socket, lift=lift * away))
-    return rows + _ending(edge, outward, end, socket)
-
-
-def _end_points(edge: Floats, outward: Floats) -> Floats:
-    """Return where straight lines from the rim meet the outline."""
-    reach = np.linspace(3.0, 30.0, 541)
+def _end_distance(edge: Floats, outward: Floats) -> Floats:
+    """Return how far in mm straight lines from the rim run to the outline."""
+    reach = np.linspace(1.0, 36.0, 1401)
     line = edge[:, None, :2] + outward[:, None, :] * reach[None, :, None]
     temple, nose, up, down = OUTLINE_MM
     x = line[..., 0] / np.where(line[..., 0] > 0, temple, nose)
     y = line[..., 1] / np.where(line[..., 1] > 0, up, down)
-    first = np.argmax(x * x + y * y >= 1.0, axis=1)
-    return np.asarray(edge[:, :2] + outward * reach[first][:, None])
-
-
-def _ending(edge: Floats, outward: Floats, end: Floats, socket: Socket) -> list[Floats]:
-    """Run on the face's surface to the outline, then sink below it."""
-    return [
-        _face_point(edge, outward, end + beyond, socket=socket, lift=np.zeros(len(edge)))
-        for beyond in (0.0, 0.9, 1.8, 2.7)
-    ]
+    return np.asarray(reach[np.argmax(x * x + y * y >= 1.0, axis=1)])
 
 
 def _spline_basis(controls: int, rows: int) -> tuple[Floats, Floats]:

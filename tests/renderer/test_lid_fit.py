@@ -9,13 +9,10 @@ from renderer.eye.lids import LidRims
 from renderer.head import lid_rims
 from renderer.head.caruncle import caruncle, outer_membrane
 from renderer.head.face_mesh import face_mesh, to_patch, to_world
+from renderer.head.lid_pose import STRAIGHT, LidPose
+from renderer.head.lid_shell import height_over_globe
 
-
-def over_globe(points: np.ndarray) -> np.ndarray:
-    """Return how far points lie above the globe's front surface, NaN beside it, in mm."""
-    r = np.hypot(points[..., 0], points[..., 1])
-    beside = (r > 11.0) | (points[..., 2] < 0)
-    return np.where(beside, np.nan, points[..., 2] - lid_rims.globe_height(r))
+POSES = (STRAIGHT, LidPose(25.0, -20.0), LidPose(-30.0, 20.0, 0.3), LidPose(blink=1.0))
 
 
 @pytest.mark.parametrize("eye", [0, 1])
@@ -63,26 +60,26 @@ def test_the_upper_margin_hides_and_the_lower_shows_a_thin_edge_from_the_front()
 
 
 def test_rims_touch_the_globe_wherever_they_lie_on_it() -> None:
-    for curve in lid_rims.rim_curves():
-        middle = np.abs(curve[:, 0]) < 7.0
-        gap = over_globe(curve[middle])
-        np.testing.assert_allclose(gap, lid_rims.CLEARANCE_MM, atol=1e-6)
+    for pose in POSES:
+        for curve in lid_rims.rim_curves(pose):
+            middle = np.abs(curve[:, 0]) < 7.0
+            gap = height_over_globe(curve[middle], pose)
+            np.testing.assert_allclose(gap, lid_rims.CLEARANCE_MM, atol=1e-4)
 
 
 @pytest.mark.parametrize("eye", [0, 1])
 def test_the_globe_never_pokes_through_the_skin(eye: int) -> None:
     patch = face_mesh().lids[eye]
     skin = patch.points_mm[:, patch.rim_row :]
-    assert np.nanmin(over_globe(skin)) > 0.5
+    assert height_over_globe(skin, patch.pose).min() > 0.5
 
 
 @pytest.mark.parametrize("eye", [0, 1])
 def test_no_light_passes_between_lid_and_globe(eye: int) -> None:
     patch = face_mesh().lids[eye]
     ring = patch.points_mm[:, 0]
-    inside = np.linalg.norm(ring, axis=1) < 11.75
     on_globe = np.abs(ring[:, 0]) < 8.0
-    assert inside[on_globe].all()
+    assert height_over_globe(ring[on_globe], patch.pose).max() < -0.3
 
 
 def test_lids_are_about_two_millimetres_thick() -> None:
@@ -115,8 +112,7 @@ def test_patches_end_on_the_face() -> None:
 def test_corners_are_closed_and_dive_under_the_globe() -> None:
     inner, outer = caruncle(), outer_membrane()
     for corner in (inner, outer):
-        height = over_globe(corner.points_mm)
-        assert np.nanmin(height) < -0.1
+        assert height_over_globe(corner.points_mm, STRAIGHT).min() < -0.1
     assert inner.pink.max() > 0.9
     assert outer.pink.max() == 0.0
     bump = inner.points_mm[inner.pink > 0.5]
