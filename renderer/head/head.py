@@ -19,9 +19,10 @@ from renderer.eye.lids import LidRims
 from renderer.head.brows import grow_brow
 from renderer.head.buffers import CellMesh, TilePyramid
 from renderer.head.clothing import knit_tile
-from renderer.head.face_mesh import face_mesh, to_world
+from renderer.head.face_mesh import FaceMesh, face_mesh, to_world
 from renderer.head.hair import grow_hair, hair_cap
 from renderer.head.lashes import grow_lashes
+from renderer.head.lid_pose import lid_poses
 from renderer.head.lid_rims import lid_rims
 from renderer.head.light import light_strands, light_surfaces, open_sky
 from renderer.head.skin_maps import SkinMaps
@@ -31,7 +32,6 @@ from renderer.light import Light
 from renderer.program import build_program
 
 CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
-SAMPLE_ALPHA_TO_COVERAGE: Final = 0x809E
 FACE_HAIR_BIAS_MM: Final = 1.2  # hairs nearer than this to a surface are not in its shadow
 SCALP_HAIR_BIAS_MM: Final = 5.0
 HEAD_MIDDLE_MM: Final = (0.0, 10.0, -85.0)
@@ -43,10 +43,10 @@ class Head:
     """The main character's head and shoulders."""
 
     def __init__(self, gl: moderngl.Context, spec: ClipSpec) -> None:
-        """Build meshes and textures; ``spec`` decides nothing yet: lids do not follow the gaze."""
-        del spec
+        """Build meshes and textures; of ``spec`` count gaze and blink, which move the lids."""
         self.gl = gl
-        self.rims: tuple[LidRims, LidRims] = (lid_rims(0), lid_rims(1))
+        poses = lid_poses(spec)
+        self.rims: tuple[LidRims, LidRims] = (lid_rims(0, poses[0]), lid_rims(1, poses[1]))
         self._programs = {
             "skin": build_program(gl, "skin.vert", fragment="skin.frag"),
             "fabric": build_program(gl, "skin.vert", fragment="fabric.frag"),
@@ -55,15 +55,18 @@ class Head:
         }
         self._skin_maps = SkinMaps(gl, face_mesh())
         self._knit = TilePyramid(gl, knit_tile())
-        skin = skin_surfaces(gl)
+        self._face = face_mesh(poses)
+        skin = skin_surfaces(gl, self._face)
         self._surfaces = skin | {"cloth": cloth_surface(gl), "cap": cap_surface(gl)}
-        self._corners = [skin["corner0"].mesh, skin["corner1"].mesh]
+        self._veils = [item.veil for item in skin.values() if item.veil is not None]
         self._close = [item.mesh for name, item in skin.items() if name != "coarse"]
         self._distant = [
             item.distant or item.mesh for name, item in skin.items() if name not in ("fine", "rest")
         ]
-        self._open_sky = open_sky(gl, self.draw_depth, self._surfaces)
-        self._hair = _grow_hair(gl)
+        self._open_sky = open_sky(
+            gl, self._surfaces, whole=self.draw_depth, without_lids=self._draw_depth_without_lids
+        )
+        self._hair = _grow_hair(gl, self._face)
         self._lit_by: Light | None = None
 
     def draw(
@@ -86,10 +89,7 @@ class Head:
         skin.set(**view, **self._skin_maps.uniforms(density))
         close = distance < CLOSE_MM
         for mesh in [*(self._close if close else self._distant), self._mesh("cap")]:
-            if mesh in self._corners:  # conjunctiva fades into the sclera, sample by sample
-                self.gl.enable_direct(SAMPLE_ALPHA_TO_COVERAGE)
             mesh.draw(skin, clip, camera_mm=camera)
-            self.gl.disable_direct(SAMPLE_ALPHA_TO_COVERAGE)
         fabric.set(**view, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
         self.gl.disable(moderngl.CULL_FACE)  # the roll neck shows its inside
         self._mesh("cloth").draw(fabric, clip)
@@ -97,7 +97,10 @@ class Head:
     def draw_hair(
         self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
     ) -> None:
-        """Draw lashes, brows and hair over everything else, each as much as it covers."""
+        """Draw what lets something through over everything else: conjunctiva, lashes, hair.
+
+        It follows ``draw`` of the same view.
+        """
         self._use_light(light)
         program = self._programs["hair"]
         pixel_per_mm = self._pixel_per_mm(projection)
@@ -110,16 +113,25 @@ class Head:
             **light.uniforms(),
         )
         clip = projection @ view_matrix
+        camera = np.asarray(camera_mm, dtype=float)
         with blending(self.gl):
+            for veil in self._veils:  # conjunctiva that fades into the sclera beneath
+                veil.draw(self._programs["skin"], clip, camera_mm=camera)
             for mesh, _ in self._hair:
-                mesh.draw(program, clip, camera_mm=np.asarray(camera_mm, dtype=float))
+                mesh.draw(program, clip, camera_mm=camera)
 
     def draw_depth(self, matrix: npt.ArrayLike) -> None:
         """Draw what is opaque into a depth map with a world-to-clip matrix."""
+        self._draw_depth(matrix, [*self._close, self._mesh("cap"), self._mesh("cloth")])
+
+    def _draw_depth_without_lids(self, matrix: npt.ArrayLike) -> None:
+        self._draw_depth(matrix, [self._mesh(name) for name in ("fine", "rest", "cap", "cloth")])
+
+    def _draw_depth(self, matrix: npt.ArrayLike, meshes: list[CellMesh]) -> None:
         program = self._programs["depth"]
         program.set(u_world_to_clip=matrix)
         self.gl.disable(moderngl.CULL_FACE)
-        for mesh in [*self._close, self._mesh("cap"), self._mesh("cloth")]:
+        for mesh in meshes:
             mesh.draw(program, np.asarray(matrix, dtype=float))
 
     def _mesh(self, name: str) -> CellMesh:
@@ -132,18 +144,17 @@ class Head:
     def _use_light(self, light: Light) -> None:
         """Bake the light into the vertex buffers unless it is the last one."""
         if self._lit_by is not light:
-            light_surfaces(self._surfaces, light, self._open_sky)
+            light_surfaces(self._surfaces, light, self._open_sky, face=self._face)
             light_strands(self._hair, light)
             self._lit_by = light
 
 
-def _grow_hair(gl: moderngl.Context) -> list[tuple[StrandMesh, float]]:
+def _grow_hair(gl: moderngl.Context, face: FaceMesh) -> list[tuple[StrandMesh, float]]:
     """Grow lashes, brows and hair, each with its shadow bias in mm.
 
     Both sides obey the same laws; hair by hair they differ.
     """
-    face = face_mesh()
-    meshes = []
+    meshes: list[tuple[StrandMesh, float]] = []
     for eye in (0, 1):
         rng = np.random.Generator(np.random.PCG64(HAIR_SEED + eye))
         for strands in (*grow_lashes(face.lids[eye], rng), grow_brow(face.sockets[eye], rng)):

@@ -15,7 +15,7 @@ import numpy as np
 
 from renderer.body.makehuman import Floats
 from renderer.cache import cached_arrays
-from renderer.head.face_mesh import face_mesh, seam
+from renderer.head.face_mesh import FaceMesh, seam
 from renderer.head.skin_light import SkinLight, light_skin
 from renderer.head.sky_visibility import Draw, Region, Visible, look_up, sky_visibility
 from renderer.head.strands import StrandMesh
@@ -29,25 +29,46 @@ BODY_REGION: Final = ((0.0, -350.0, -50.0), 520.0)
 
 
 def open_sky(
-    gl: moderngl.Context, draw_depth: Draw, surfaces: Mapping[str, Surface]
+    gl: moderngl.Context, surfaces: Mapping[str, Surface], *, whole: Draw, without_lids: Draw
 ) -> dict[str, Visible]:
-    """Return for each surface by name how free (n, DIRECTIONS) its directions are, 0 to 1."""
+    """Return for each surface by name how free (n, DIRECTIONS) its directions are, 0 to 1.
 
+    Lids and corners change with gaze and blink, the rest does not: they are kept apart, and the
+    rest sees sockets without lids. ``whole`` and ``without_lids`` draw the head's depth.
+    """
+    lids = [name for name in surfaces if name.startswith(("patch", "corner"))]
+    fixed = {name: item for name, item in surfaces.items() if name not in lids}
+    fixed_plan = [
+        (HEAD_REGION, ("fine", "rest", "coarse", "cap")),
+        *((place, ("fine",)) for place in EYE_REGIONS),
+        (BODY_REGION, ("cloth",)),
+    ]
+    lid_plan = [(place, (f"patch{eye}", f"corner{eye}")) for eye, place in enumerate(EYE_REGIONS)]
+    return _kept_sky(gl, without_lids, fixed, plan=fixed_plan, key=_digest(fixed)) | _kept_sky(
+        gl, whole, surfaces, plan=lid_plan, key=_digest(surfaces)
+    )
+
+
+Plan = Iterable[tuple[tuple[tuple[float, float, float], float], tuple[str, ...]]]
+
+
+def _kept_sky(
+    gl: moderngl.Context, draw: Draw, surfaces: Mapping[str, Surface], *, plan: Plan, key: str
+) -> dict[str, Visible]:
     def make() -> dict[str, Any]:
-        meshes = {name: (item.points_mm, item.normals) for name, item in surfaces.items()}
-        plan: list[tuple[tuple[tuple[float, float, float], float], tuple[str, ...]]]
-        plan = [(HEAD_REGION, ("fine", "rest", "coarse", "cap"))]
-        for eye, place in enumerate(EYE_REGIONS):
-            plan.append((place, ("fine", f"patch{eye}", f"corner{eye}")))
-        plan.append((BODY_REGION, ("cloth",)))
         regions = [
-            Region(centre, half, {name: meshes[name] for name in names})
+            Region(
+                centre,
+                half,
+                {name: (surfaces[name].points_mm, surfaces[name].normals) for name in names},
+            )
             for (centre, half), names in plan
         ]
-        free = sky_visibility(gl, draw_depth, regions)
+        free = sky_visibility(gl, draw, regions)
         return {name: np.round(share * 255).astype(np.uint8) for name, share in free.items()}
 
-    kept = cached_arrays(f"the head's open sky {_digest(surfaces)}", make)
+    named = ", ".join(sorted({name for _, names in plan for name in names}))
+    kept = cached_arrays(f"open sky over {named} {key}", make)
     return {
         name: np.asarray(share, dtype=np.float32) / np.float32(255) for name, share in kept.items()
     }
@@ -64,7 +85,7 @@ def _digest(surfaces: Mapping[str, Surface]) -> str:
 
 
 def light_surfaces(
-    surfaces: Mapping[str, Surface], light: Light, free: Mapping[str, Visible]
+    surfaces: Mapping[str, Surface], light: Light, free: Mapping[str, Visible], *, face: FaceMesh
 ) -> None:
     """Bake a light into every surface's vertex buffers."""
     depth, matrix = _shadow(light)
@@ -82,7 +103,7 @@ def light_surfaces(
             sun=look_up(depth, matrix, lifted, radius_px=2).astype(float),
         )
     for eye in (0, 1):
-        join = seam(face_mesh().patches[eye], face_mesh().fine)
+        join = seam(face.patches[eye], face.fine)
         own, beside = lights[f"patch{eye}"], lights["fine"]
         lights[f"patch{eye}"] = SkinLight(
             join.blend(own.diffuse, beside.diffuse),

@@ -13,7 +13,7 @@ from renderer.head.buffers import CellMesh
 from renderer.head.character import figure
 from renderer.head.clothing import COLOUR as WOOL_COLOUR
 from renderer.head.clothing import sweater
-from renderer.head.face_mesh import SkinPart, face_mesh
+from renderer.head.face_mesh import FaceMesh, SkinPart, face_mesh
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import hair_cap
 from renderer.head.lid_fit import ALONG, AROUND, grid_quads
@@ -25,7 +25,10 @@ AROUND_COLUMN: Final = 11  # of the rows: the way around the fissure in the lids
 
 @dataclass
 class Surface:
-    """One lit surface: its geometry for bakes, and its mesh, or its fine and its distant mesh."""
+    """One lit surface: its geometry for bakes, and its mesh, or its fine and its distant mesh.
+
+    ``veil`` holds the triangles that let something through, if there are such; ``mesh`` does not.
+    """
 
     points_mm: Floats
     normals: Floats
@@ -34,11 +37,12 @@ class Surface:
     wet: Floats
     mesh: CellMesh
     distant: CellMesh | None = None
+    veil: CellMesh | None = None
     is_skin: bool = True
     meshes: list[CellMesh] = field(init=False)
 
     def __post_init__(self) -> None:
-        self.meshes = [self.mesh] if self.distant is None else [self.mesh, self.distant]
+        self.meshes = [mesh for mesh in (self.mesh, self.distant, self.veil) if mesh is not None]
 
     def write_light(self, diffuse: Floats, ambient: Floats, sun: Floats) -> None:
         """Replace the baked light: diffuse (n, 3), free share of sky and of sun (n,)."""
@@ -47,9 +51,8 @@ class Surface:
             mesh.write_light(rows)
 
 
-def skin_surfaces(gl: moderngl.Context) -> dict[str, Surface]:
+def skin_surfaces(gl: moderngl.Context, face: FaceMesh) -> dict[str, Surface]:
     """Return the skin: fine, rest, coarse, and for each eye its patch and its corners."""
-    face = face_mesh()
     parts = {"fine": face.fine, "rest": face.rest, "coarse": face.coarse}
     for eye in (0, 1):
         parts |= {f"patch{eye}": face.patches[eye], f"corner{eye}": face.corners[eye]}
@@ -58,14 +61,16 @@ def skin_surfaces(gl: moderngl.Context) -> dict[str, Surface]:
         albedo, gloss = paint(part)
         eye = int(name[-1]) if name.startswith("patch") else None
         rows = _skin_rows(part, albedo, eye)
+        solid, sheer = _by_cover(part) if name.startswith("corner") else (part.triangles, None)
         surfaces[name] = Surface(
             part.points_mm,
             part.normals,
             part.triangles,
             gloss,
             part.wet,
-            CellMesh(gl, rows, part.triangles, turn=None if eye is None else AROUND_COLUMN),
+            CellMesh(gl, rows, solid, turn=None if eye is None else AROUND_COLUMN),
             None if eye is None else CellMesh(gl, rows, _thinned_patch(eye), turn=AROUND_COLUMN),
+            None if sheer is None else CellMesh(gl, rows, sheer),
         )
     return surfaces
 
@@ -105,6 +110,13 @@ def _skin_rows(part: SkinPart, albedo: Floats, eye: int | None) -> Floats:
     lid = np.zeros((len(detail), 2)) if eye is None else lid_coordinates(part, eye)
     sunk = part.points_mm - part.normals * np.reshape(part.sink_mm, (-1, 1))
     return np.column_stack([sunk, part.normals, albedo, detail, lid, part.lid])
+
+
+def _by_cover(part: SkinPart) -> tuple[Indices, Indices]:
+    """Part triangles into those that hide what is behind and those that let something through."""
+    cover = part.lid[part.triangles]
+    solid = cover.min(axis=1) > 0.999
+    return part.triangles[solid], part.triangles[~solid & (cover.max(axis=1) > 0.001)]
 
 
 def _thinned_patch(eye: int) -> Indices:
