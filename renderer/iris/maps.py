@@ -40,6 +40,7 @@ from renderer.textures.sizes import (
 
 __all__ = [
     "BASE_PX",
+    "HEIGHT_RANGE_MM",
     "IRIS_RADIUS_MM",
     "MAP_EDGE_MM",
     "PUPIL_RADIUS_MM",
@@ -49,11 +50,12 @@ __all__ = [
     "mean_albedo",
     "mean_thickness_mm",
     "scattering",
+    "sized_maps",
 ]
 
 BASE_PX: Final = 2048
 MAP_EDGE_MM: Final = HALF_SIZE_MM
-_HEIGHT_RANGE_MM: Final = 0.6
+HEIGHT_RANGE_MM: Final = 0.6
 
 
 @dataclass(frozen=True)
@@ -82,9 +84,13 @@ def iris_maps(seed: int, colour: str, *, size_px: int) -> IrisMaps:
     """
     family(colour)
     check_size(size_px, BASE_PX)
-    if size_px == 1:
-        return _mean_maps(seed, colour)
-    return _sized(_kept(seed, colour), size_px)
+    return sized_maps(_kept(seed, colour), size_px)
+
+
+def sized_maps(kept: dict[str, npt.NDArray[Any]], size_px: int) -> IrisMaps:
+    """Return a bake's maps at a size: those of ``bake_iris`` or of an iris file."""
+    check_size(size_px, BASE_PX)
+    return _mean_maps(kept) if size_px == 1 else _sized(kept, size_px)
 
 
 def mean_albedo(seed: int, colour: str) -> Field:
@@ -110,7 +116,7 @@ def bake_iris(seed: int, colour: str, *, size_px: int) -> dict[str, npt.NDArray[
     coarse = tissue[2::4, 2::4]
     return {
         "albedo": pack_albedo(albedo),
-        "height": pack_range(relief.height_mm, _HEIGHT_RANGE_MM),
+        "height": pack_range(relief.height_mm, HEIGHT_RANGE_MM),
         "cavity": np.rint(relief.cavity * 255.0).astype(np.uint8),
         "thickness": thickness,
         "mean_albedo": albedo[tissue].mean(axis=0, dtype=np.float64).astype(np.float32),
@@ -126,7 +132,7 @@ def _kept(seed: int, colour: str) -> dict[str, npt.NDArray[Any]]:
 
 
 def _sized(kept: dict[str, npt.NDArray[Any]], size_px: int) -> IrisMaps:
-    height = shrink(unpack_range(kept["height"], _HEIGHT_RANGE_MM), size_px)
+    height = shrink(unpack_range(kept["height"], HEIGHT_RANGE_MM), size_px)
     thickness = kept["thickness"]
     if size_px > thickness.shape[0]:
         layers = [enlarge(thickness[..., k], size_px) for k in range(4)]
@@ -142,8 +148,7 @@ def _sized(kept: dict[str, npt.NDArray[Any]], size_px: int) -> IrisMaps:
     )
 
 
-def _mean_maps(seed: int, colour: str) -> IrisMaps:
-    kept = _kept(seed, colour)
+def _mean_maps(kept: dict[str, npt.NDArray[Any]]) -> IrisMaps:
     return IrisMaps(
         albedo=kept["mean_albedo"].reshape(1, 1, 3),
         normal=np.array([[[0.0, 0.0, 1.0]]], np.float32),
