@@ -13,7 +13,7 @@ import moderngl
 from renderer.camera import CameraUniforms, View, camera_radius_mm, views
 from renderer.clip import ClipSpec
 from renderer.crowd.cube import CrowdCube
-from renderer.eye.eyes import Eyes
+from renderer.eye.eyes import EyeModel, Eyes
 from renderer.picture import SAMPLES, Picture, Pixels, Radiance
 from renderer.scene import Scene, build_scene, scene_key
 
@@ -85,6 +85,11 @@ class FrameRenderer:
                 visible[eye] = pixels
         return visible[0], visible[1]
 
+    @property
+    def eye_models(self) -> tuple[EyeModel, ...]:
+        """Both eyes as they are drawn, the viewer's left, then right: what a scene exports."""
+        return self._eyes.models
+
     def render_number(self, frame: int) -> Frame:
         """Render one frame of the clip by its number (0-based)."""
         return self.render(self.spec.azimuth_deg(frame), time_s=self.spec.time_s(frame))
@@ -103,6 +108,9 @@ class FrameRenderer:
         scene.head.draw(**camera, light=scene.light)
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         visible = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
+        for eye in view.eyes:
+            if (self.spec.left, self.spec.right)[eye].reflection in {"high", "ultra"}:
+                scene.head.draw_tears(eye, **camera, light=scene.light)
         scene.crowd.draw(**camera, time_s=time_s)
         scene.surroundings.draw_background(view_matrix=view.view_matrix, projection=view.projection)
         scene.head.draw_hair(**camera, light=scene.light)

@@ -22,6 +22,7 @@ COMMANDS: Final = (
     "render",
     "worker",
     "still",
+    "export-scene",
     "bench",
     "gallery",
     "serve",
@@ -52,7 +53,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for name in COMMANDS:
-        command = importlib.import_module(f"study.commands.{name}")
+        command = importlib.import_module(f"study.commands.{name.replace('-', '_')}")
         subparser = subparsers.add_parser(name, help=command.HELP, description=command.DESCRIPTION)
         command.add_arguments(subparser)
         subparser.set_defaults(run=command.run)

@@ -80,7 +80,7 @@ def test_every_command_of_the_readme_exists() -> None:
     from study.cli import COMMANDS
 
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert list(dict.fromkeys(re.findall(r"^\| `ocularist (\w+)", text, flags=re.MULTILINE))) == [
+    assert list(dict.fromkeys(re.findall(r"^\| `ocularist ([\w-]+)", text, flags=re.MULTILINE))) == [
         *COMMANDS
     ]
 
