@@ -1,0 +1,247 @@
+"""How an eye stands before the camera, from its two edges; and where its points lie in the picture.
+
+A circle's shortening alone says little near 0 degrees and nothing of the side an eye turns to, and
+the limbus is no circle but 5 % lower than wide. So one model eye is fitted to both edges at once,
+seen through its own cornea, with the anatomy's spread as the prior of everything it leaves open.
+Eye space in mm (see renderer.eye.anatomy); pictures with x to the right, y down.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+from scipy import optimize
+
+from renderer.eye.anatomy import CORNEA_IOR, LIMBUS_HEIGHT_RATIO, LIMBUS_Z_MM
+from renderer.eye.optics import refract, surface_height, surface_normal, to_iris_plane, unit
+from renderer.unrefraction.edges import Edges
+
+Array = npt.NDArray[np.float64]
+
+VISIBLE_LIMBUS_MM: Final = 5.76  # where half of the light is sclera's, as surface.glsl draws it
+RUFF_MM: Final = 0.035  # how far outside of the pupil's rim its dark lining begins to show
+MODEL_LIMBUS_MM: Final = 11.7  # the visible iris's width that the model eye stands for
+TELECENTRIC_MM: Final = 1e5  # far enough to be parallel
+CONTOUR: Final = 72
+
+# Spread of what the edges leave open, in the units of the parameters (see _Parameters).
+TILT_DEG: Final = 12.0  # people look into a camera that is asked to photograph their eye
+DECENTRE_MM: Final = 0.15
+HEIGHT_RATIO: Final = 0.015
+ROLL_DEG: Final = 12.0  # about the coarse search's, which goes in steps of 45
+SNAP_DEG: Final = 10.0  # rolls below this are taken for none
+PUPIL_NOISE_MM: Final = 0.025  # of single edge points: the ruff's scallops
+LIMBUS_NOISE_MM: Final = 0.05
+
+
+@dataclass(frozen=True)
+class Pose:
+    """A model eye before a camera.
+
+    ``x``, ``y`` is the limbus's centre in pixels, ``px_per_mm`` the scale there, ``yaw`` and
+    ``pitch`` the gaze to the right and up from the line of sight and ``roll`` the eye's turn
+    anticlockwise, all in radians; ``distance_mm`` from the camera to the limbus's centre.
+    ``pupil_mm`` is the pupil's radius on the iris plane, ``pupil_x_mm``, ``pupil_y_mm`` its centre
+    there and ``height_ratio`` the limbus's height over its width.
+    """
+
+    x: float
+    y: float
+    px_per_mm: float
+    yaw: float
+    pitch: float
+    roll: float
+    distance_mm: float
+    pupil_mm: float
+    pupil_x_mm: float
+    pupil_y_mm: float
+    height_ratio: float
+
+    @property
+    def tilt_deg(self) -> float:
+        """The angle between the gaze and the line of sight."""
+        return math.degrees(math.acos(math.cos(self.yaw) * math.cos(self.pitch)))
+
+    @property
+    def camera_mm(self) -> Array:
+        """The camera in eye space."""
+        return np.asarray(_LIMBUS + self.distance_mm * self._turn()[2])
+
+    def project(self, p_eye: Array) -> Array:
+        """Return the pixels (..., 2) where points (..., 3) of eye space appear."""
+        q = (p_eye - _LIMBUS) @ self._turn().T
+        scale = self.px_per_mm * self.distance_mm / (self.distance_mm - q[..., 2])
+        return np.stack([self.x + scale * q[..., 0], self.y - scale * q[..., 1]], axis=-1)
+
+    def entry(self, x_mm: Array) -> Array:
+        """Return the points (..., 3) of the cornea through which iris points (..., 2) are seen.
+
+        Newton's method on the entry point, its Jacobian by differences of 0.01 mm.
+        """
+        camera = self.camera_mm
+        s = 0.85 * x_mm + 0.3 * self._turn()[2][:2]
+        step = 0.01
+        for _ in range(6):
+            error = x_mm - seen_through(s, camera)
+            jx = (seen_through(s + [step, 0.0], camera) - x_mm + error) / step
+            jy = (seen_through(s + [0.0, step], camera) - x_mm + error) / step
+            det = jx[..., 0] * jy[..., 1] - jx[..., 1] * jy[..., 0]
+            det = np.where(np.abs(det) < 0.05, 0.05, det)
+            move = np.stack(
+                [
+                    (jy[..., 1] * error[..., 0] - jy[..., 0] * error[..., 1]) / det,
+                    (jx[..., 0] * error[..., 1] - jx[..., 1] * error[..., 0]) / det,
+                ],
+                axis=-1,
+            )
+            s = s + np.clip(move, -1.0, 1.0)
+            s = s * np.minimum(
+                1.0, 6.4 / np.maximum(np.linalg.norm(s, axis=-1, keepdims=True), 1e-9)
+            )
+        return on_surface(s)
+
+    def limbus(self) -> Array:
+        """Return the visible limbus in the picture, (CONTOUR, 2)."""
+        circle = VISIBLE_LIMBUS_MM * _CIRCLE * [1.0, self.height_ratio]
+        return self.project(on_surface(circle))
+
+    def pupil(self) -> Array:
+        """Return the pupil's edge in the picture as the cornea shows it, (CONTOUR, 2)."""
+        circle = (self.pupil_mm + RUFF_MM) * _CIRCLE + [self.pupil_x_mm, self.pupil_y_mm]
+        return self.project(self.entry(circle))
+
+    def _turn(self) -> Array:
+        """Return the rotation (3, 3) from eye space to the camera's axes."""
+        cy, sy, cp, sp = (
+            math.cos(self.yaw),
+            math.sin(self.yaw),
+            math.cos(self.pitch),
+            math.sin(self.pitch),
+        )
+        forward = np.array([sy * cp, sp, cy * cp])
+        right = np.array([cy, 0.0, -sy])
+        turn = np.column_stack([right, np.cross(forward, right), forward])
+        c, s = math.cos(self.roll), math.sin(self.roll)
+        return np.asarray(turn @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]))
+
+
+_LIMBUS: Final = np.array([0.0, 0.0, LIMBUS_Z_MM])
+_CIRCLE: Final = np.stack(
+    [f(np.arange(CONTOUR) / CONTOUR * 2 * np.pi) for f in (np.cos, np.sin)], axis=-1
+)
+
+
+def on_surface(s: Array) -> Array:
+    """Return the points (..., 3) of the eye's front above (..., 2)."""
+    height, _ = surface_height(np.hypot(s[..., 0], s[..., 1]))
+    return np.concatenate([s, height[..., None]], axis=-1)
+
+
+def seen_through(s: Array, camera_mm: Array) -> Array:
+    """Return the iris points (..., 2) that a camera sees through the cornea above (..., 2)."""
+    p = on_surface(s)
+    bent = refract(unit(p - camera_mm), surface_normal(p), ior_ratio=1.0 / CORNEA_IOR)
+    return to_iris_plane(p, bent)
+
+
+def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float) -> Pose:
+    """Fit the model eye to the edges.
+
+    ``turn`` is the coarse direction of the line between the lids' corners, radians, y down;
+    ``limbus_mm`` the visible iris's true width: a larger eye is the same picture of the model eye
+    at another scale.
+    """
+    limbus, pupil = edges.limbus, edges.pupil
+    start_scale = limbus.ellipse.major / VISIBLE_LIMBUS_MM
+    roll, spread = _roll(turn), math.radians(ROLL_DEG)
+    start = np.array(
+        [
+            limbus.ellipse.x,
+            limbus.ellipse.y,
+            math.log(start_scale),
+            0.02,
+            0.02,
+            pupil.ellipse.radius / start_scale / 1.12,
+            0.0,
+            0.0,
+            LIMBUS_HEIGHT_RATIO,
+            roll,
+        ]
+    )
+    model_distance = distance_mm * MODEL_LIMBUS_MM / limbus_mm
+
+    def pose(values: Array) -> Pose:
+        x, y, scale, yaw, pitch, radius, px, py, ratio, turned = (float(v) for v in values)
+        return Pose(
+            x, y, math.exp(scale), yaw, pitch, turned, model_distance, radius, px, py, ratio
+        )
+
+    def residuals(values: Array) -> Array:
+        trial = pose(values)
+        # An ellipse's many edge points are no independent witnesses: each edge weighs as 40.
+        parts = [
+            _apart(edge.points, contour, trial.px_per_mm) / noise * math.sqrt(40 / len(edge.points))
+            for edge, contour, noise in (
+                (pupil, trial.pupil(), PUPIL_NOISE_MM),
+                (limbus, trial.limbus(), LIMBUS_NOISE_MM),
+            )
+        ]
+        prior = np.array(
+            [
+                trial.yaw / math.radians(TILT_DEG),
+                trial.pitch / math.radians(TILT_DEG),
+                trial.pupil_x_mm / DECENTRE_MM,
+                trial.pupil_y_mm / DECENTRE_MM,
+                (trial.height_ratio - LIMBUS_HEIGHT_RATIO) / HEIGHT_RATIO,
+                (trial.roll - roll) / spread,
+            ]
+        )
+        return np.concatenate([*parts, prior])
+
+    x_scale = np.array([1.0, 1.0, 0.01, 0.1, 0.1, 0.05, 0.1, 0.1, 0.01, 0.1])
+
+    def best(first: list[Array]) -> Array:
+        fits = [
+            optimize.least_squares(residuals, at, x_scale=x_scale, loss="soft_l1", max_nfev=40)
+            for at in first
+        ]
+        return np.asarray(min(fits, key=lambda fit: float(fit.cost)).x)
+
+    # Both turns explain a shortened circle alike until the pupil's shift tells them apart.
+    found = best([start * _signs(sx, sy) for sx in (6.0, -6.0) for sy in (6.0, -6.0)])
+    if abs(found[-1]) > math.radians(SNAP_DEG):
+        return pose(found)
+    # The limbus is too nearly round to tell a small roll from none: the photograph's own vertical.
+    roll, spread = 0.0, 1e-4
+    return pose(best([found]))
+
+
+def _signs(yaw: float, pitch: float) -> Array:
+    return np.array([1.0, 1.0, 1.0, yaw, pitch, 1.0, 1.0, 1.0, 1.0, 1.0])
+
+
+def _roll(turn: float) -> float:
+    """Return a turn of the lids' axis, y down, as an anticlockwise roll within a right angle."""
+    roll = -turn
+    while roll <= -math.pi / 2:
+        roll += math.pi
+    return roll
+
+
+def _apart(points: Array, contour: Array, px_per_mm: float) -> Array:
+    """Return how far points lie outside a closed contour around its mean, in mm."""
+    middle = contour.mean(axis=0)
+    angle, radius = _polar(contour - middle)
+    order = np.argsort(angle)
+    at, r = _polar(points - middle)
+    return np.asarray(
+        (r - np.interp(at, angle[order], radius[order], period=2 * np.pi)) / px_per_mm
+    )
+
+
+def _polar(v: Array) -> tuple[Array, Array]:
+    return np.arctan2(v[:, 1], v[:, 0]), np.hypot(v[:, 0], v[:, 1])
