@@ -70,7 +70,7 @@ class Eyes:
     ) -> None:
         """Build both eyes; ``left_sum`` takes the thesis's own subsurface sum instead of ours."""
         self._gl = gl
-        self._models = tuple(
+        self.models = tuple(
             self._build(
                 eye,
                 detail,
@@ -85,7 +85,7 @@ class Eyes:
 
     def draw(self, eye: int, *, view_matrix: Any, projection: Any, camera_mm: Any) -> None:
         """Draw the viewer's left (0) or right (1) eye, opaque and depth-tested."""
-        model = self._models[eye]
+        model = self.models[eye]
         camera = {"u_view_matrix": view_matrix, "u_projection": projection}
         if model.silhouette and model.silhouette.camera is not camera_mm:
             self.shade(eye, view_matrix=view_matrix, projection=projection, camera_mm=camera_mm)
@@ -102,16 +102,16 @@ class Eyes:
         The picture goes to a target of its own, as large as the current viewport. ``draw`` does
         this itself for a camera that was not announced; levels that need nothing do nothing.
         """
-        silhouette = self._models[eye].silhouette
+        silhouette = self.models[eye].silhouette
         if silhouette is None:
             return
         target, wireframe = self._gl.fbo, self._gl.wireframe
         self._set(eye, {"u_view_matrix": view_matrix, "u_projection": projection}, camera_mm)
-        placed = np.asarray(view_matrix) @ self._models[eye].values["u_eye_to_world"]
+        placed = np.asarray(view_matrix) @ self.models[eye].values["u_eye_to_world"]
         silhouette.begin(self._gl, target.viewport, eye_to_clip=np.asarray(projection) @ placed)
         self._gl.wireframe = False
         self._gl.enable_only(moderngl.CULL_FACE)
-        self._models[eye].mesh.render()
+        self.models[eye].mesh.render()
         self._gl.wireframe = wireframe
         self._gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         target.use()
@@ -120,8 +120,8 @@ class Eyes:
     def _set(self, eye: int, camera: dict[str, Any], camera_mm: Any) -> None:
         distance_mm = float(np.linalg.norm(np.asarray(camera_mm) - eye_centre_mm(eye)))
         lines = self._gl.fbo.viewport[3]
-        self._models[eye].program.set(
-            **self._models[eye].values,
+        self.models[eye].program.set(
+            **self.models[eye].values,
             **camera,
             u_camera_mm=camera_mm,
             u_mm_per_px=2 * distance_mm / (float(camera["u_projection"][1][1]) * lines),
@@ -129,7 +129,7 @@ class Eyes:
 
     def is_active(self, eye: int, uniform: str) -> bool:
         """Whether the eye's program still reads a uniform: off levels leave none behind."""
-        return self._models[eye].program.is_active(uniform)
+        return self.models[eye].program.is_active(uniform)
 
     def _build(
         self,
