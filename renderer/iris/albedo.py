@@ -56,8 +56,8 @@ def core_share(plane: Plane, relief: Relief, look: Family, seed: int) -> Field:
     wavy *= np.float32(wide)
     reach = plane.around(np.maximum(look.core_mm * wavy, 0.2).astype(np.float32))
     outward = (plane.radius_mm - plane.pupil_mm) / reach
-    ragged = outward + np.float32(0.20) * relief.streaks + np.float32(0.22) * relief.patches
-    central = np.float32(min(look.core_share * share, 0.9)) * smoothstep(1.35, 0.35, ragged)
+    ragged = outward + np.float32(0.26) * relief.streaks + np.float32(0.14) * relief.patches
+    central = np.float32(min(look.core_share * share, 0.9)) * smoothstep(1.75, 0.15, ragged)
     flecks = smoothstep(0.7, 1.9, relief.patches + np.float32(0.6) * relief.streaks)
     flecks *= smoothstep(5.5, 4.8, plane.radius_mm)
     return np.asarray(np.maximum(central, np.float32(0.40 * look.core_share) * flecks))
@@ -80,9 +80,10 @@ def _lightness(relief: Relief, look: Family) -> Field:
     f = np.float32
     lift = f(1.10) * (relief.tone - f(0.45)) + f(0.45) * (relief.height - f(0.40))
     lift += f(1.2) * relief.detail + f(1.5) * (relief.cavity - f(0.86))
-    lift -= f(0.30) * relief.furrow + f(0.85 * (1.0 - 0.3 * look.veil)) * relief.crypt
+    lift -= f(0.20 + 0.9 * look.veil) * relief.furrow
+    lift -= f(0.85 * (1.0 - 0.3 * look.veil)) * relief.crypt
     lift *= f(look.contrast)
-    lift += f(0.05) * relief.streaks + f(0.10) * relief.patches
+    lift += f(0.05) * relief.streaks + f(0.15) * relief.patches
     # Light that scatters between fibres fills gaps and evens out crests: both ends bend.
     return np.asarray(f(1.5) * np.tanh(lift * f(1.0 / 1.5)))
 
@@ -93,7 +94,7 @@ def _ridge_light(plane: Plane, relief: Relief) -> Field:
     crest = np.exp(-(((beyond - np.float32(0.02)) / np.float32(0.14)) ** 2))
     moat = np.exp(-(((beyond + np.float32(0.30)) / np.float32(0.16)) ** 2))
     broken = np.clip(np.float32(0.7) + np.float32(0.5) * relief.patches, 0.0, 1.4)
-    return np.asarray((np.float32(0.27) * crest - np.float32(0.13) * moat) * broken)
+    return np.asarray((np.float32(0.16) * crest - np.float32(0.13) * moat) * broken)
 
 
 def _balanced_gain(plane: Plane, lift: Field) -> Field:

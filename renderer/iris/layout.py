@@ -75,7 +75,7 @@ def plan_iris(seed: int, *, freckle_rate: float, crypt_rate: float) -> IrisLayou
 
 def _pupil_edge(seed: int) -> Array:
     """The ruff's inner edge: nearly round, with 60 to 80 small uneven crenations."""
-    scallops = np.abs(closed_noise(76, seed, 11)) * 0.013 + closed_noise(7, seed, 12) * 0.008
+    scallops = np.abs(closed_noise(140, seed, 11)) * 0.014 + closed_noise(7, seed, 12) * 0.008
     return np.asarray(PUPIL_RADIUS_MM + scallops - 0.012, np.float32)
 
 
@@ -107,13 +107,13 @@ def _collarette(rng: np.random.Generator, cusps: Array, seed: int) -> Array:
 
 
 def _crypts(rng: np.random.Generator, cusps: Array, collarette: Array, crypt_rate: float) -> Crypts:
-    """Lenses of 0.02 to 0.3 mm2, most hugging the collarette, then small ones at the root.
+    """Lenses of 0.015 to 0.3 mm2, most hugging the collarette, then small ones at the root.
 
     10 to 25 is the mean iris's count; some have nearly none, so the count itself is drawn widely.
     """
     hugging = round(int(rng.integers(4, 16)) * crypt_rate)
     free = round(int(rng.integers(1, 8)) * crypt_rate)
-    marginal = round(int(rng.integers(14, 34)) * crypt_rate)
+    marginal = round(int(rng.integers(8, 22)) * crypt_rate)
     area = np.exp(rng.uniform(np.log(0.02), np.log(0.30), hugging + free))
     slender = rng.uniform(1.1, 3.4, hugging + free)
     # A lens of half axes a and b has the area 8 a b / 3 (parabolic sides).
@@ -127,7 +127,8 @@ def _crypts(rng: np.random.Generator, cusps: Array, collarette: Array, crypt_rat
     inner = over_angle(collarette, angle.astype(np.float32))
     radius = inner + half_length[:hugging] * 0.85 + rng.exponential(0.12, hugging)
     free_radius = rng.uniform(3.9, 5.0, free)
-    small = rng.uniform(0.03, 0.085, marginal)
+    stretch = rng.uniform(1.2, 2.6, marginal)
+    small = np.sqrt(np.exp(rng.uniform(np.log(0.015), np.log(0.05), marginal)) * 3 / 8 / stretch)
     return Crypts(
         angle=np.concatenate([angle, rng.uniform(0, 2 * np.pi, free + marginal)]).astype(
             np.float32
@@ -136,9 +137,7 @@ def _crypts(rng: np.random.Generator, cusps: Array, collarette: Array, crypt_rat
             np.float32
         ),
         half_width_mm=np.concatenate([half_width, small]).astype(np.float32),
-        half_length_mm=np.concatenate(
-            [half_length, small * rng.uniform(1.2, 2.6, marginal)]
-        ).astype(np.float32),
+        half_length_mm=np.concatenate([half_length, small * stretch]).astype(np.float32),
         depth=np.concatenate(
             [rng.uniform(0.55, 1.0, hugging + free), rng.uniform(0.3, 0.8, marginal)]
         ).astype(np.float32),

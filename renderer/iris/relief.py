@@ -16,9 +16,17 @@ from renderer.iris.plane import HALF_SIZE_MM, Plane, blur
 from renderer.iris.strands import iris_tubes
 from renderer.textures.noise import Field, noise_grid, polar_noise, sample_polar
 from renderer.textures.sizes import smoothstep
-from renderer.textures.tubes import draw_tubes
+from renderer.textures.tubes import Tubes, draw_tubes
 
 RELIEF_MM: Final = 0.50
+# Deep to high: how far light from below wanders in a deck in mm, the deck's opacity, and the
+# heights between which a fibre's side turns from clear to opaque.
+DEPTHS: Final = (
+    (0.010, 0.80, 0.04, 0.28),
+    (0.016, 0.85, 0.06, 0.46),
+    (0.014, 0.92, 0.10, 0.64),
+    (0.010, 0.95, 0.16, 0.80),
+)
 
 
 @dataclass(frozen=True)
@@ -63,8 +71,7 @@ def build_relief(plane: Plane, layout: IrisLayout, seed: int, *, veil: float) ->
     """Draw the fibres and shape them into the relief; ``veil`` covers them with a sheet."""
     n = plane.size_px
     # Points closer than a texel, also where a strand runs slantwise to the radius.
-    strands = iris_tubes(layout, seed, step_mm=1.2 * HALF_SIZE_MM / n)
-    fibres, tone = draw_tubes(strands, n, half_size_mm=HALF_SIZE_MM)
+    decks = iris_tubes(layout, seed, step_mm=1.2 * HALF_SIZE_MM / n)
     key = seed * 64
     streaks = sample_polar(
         polar_noise(512, 2048, cells=(9.0, 420), seed=key + 1)
@@ -77,15 +84,16 @@ def build_relief(plane: Plane, layout: IrisLayout, seed: int, *, veil: float) ->
     patches += np.float32(0.5) * noise_grid(n, n, cells=(23.0, 23.0), seed=key + 4)
     patches *= smoothstep(5.95, 5.75, plane.radius_mm)
     grain = noise_grid(n, n, cells=(300.0, 300.0), seed=key + 5)
+    nap = _nap(plane, key) + np.float32(0.35) * grain
     crypt = crypt_mask(plane, layout.crypts, key + 10)
     furrow = furrow_mask(plane, layout)
     floor = 0.045 + 0.030 * streaks + 0.012 * grain
-    bare = fibres <= floor
+    fibres, tone = _weave(decks, np.float32(0.10) + np.float32(0.07) * streaks, n)
     height = np.maximum(fibres, floor)
-    tone = np.where(bare, np.float32(0.10) + np.float32(0.07) * streaks, tone)
-    mist = np.clip(veil + 0.16 * patches - 0.6 * crypt, 0.0, 0.9)
-    height, tone = _cover(plane, (height, tone), mist, streaks)
-    height = height * (1.0 - 0.35 * crypt) + _macro_height(plane) - 0.14 * furrow
+    mist = np.clip(veil + 0.10 + 0.20 * patches - 0.7 * crypt, 0.0, 0.9)
+    height, tone = _cover(plane, (height, tone), mist, nap)
+    # A thick sheet folds deeper when the pupil widens than bare fibres do.
+    height = height * (1.0 - 0.35 * crypt) + _macro_height(plane) - (0.10 + 0.14 * veil) * furrow
     edge = smoothstep(0.0, 0.16, plane.radius_mm - plane.pupil_mm)
     height = np.clip(height * edge + 0.05, 0.0, 1.0).astype(np.float32)
     return Relief(
@@ -103,15 +111,36 @@ def build_relief(plane: Plane, layout: IrisLayout, seed: int, *, veil: float) ->
     )
 
 
+def _weave(decks: list[Tubes], floor: Field, size_px: int) -> tuple[Field, Field]:
+    """Lay decks of fibres over each other; return the highest one's height and the tone seen.
+
+    Fibres are translucent: round ones show what lies below at their sides, and light from a lower
+    deck has wandered through those above, so that the deepest is the softest.
+    """
+    height, seen = np.zeros_like(floor), floor
+    for (wander_mm, opacity, low, high), tubes in zip(DEPTHS, decks, strict=True):
+        crest, tone = draw_tubes(tubes, size_px, half_size_mm=HALF_SIZE_MM)
+        seen = blur(seen, wander_mm, size_px)
+        seen += (tone - seen) * (np.float32(opacity) * smoothstep(low, high, crest))
+        height = np.maximum(height, crest)
+    return height, blur(seen, 0.004, size_px)
+
+
 def _cover(
-    plane: Plane, fields: tuple[Field, Field], mist: Field, streaks: Field
+    plane: Plane, fields: tuple[Field, Field], mist: Field, nap: Field
 ) -> tuple[Field, Field]:
-    """Lay the anterior border sheet over the fibres: smoothed relief with its own fine streaks."""
+    """Lay the anterior border sheet over the fibres: their smoothed relief with its own nap."""
     height, tone = fields
-    smooth = blur(height, 0.045, plane.size_px) + np.float32(0.03) * streaks
-    soft_tone = blur(tone, 0.06, plane.size_px) + np.float32(0.05) * streaks
-    covered = height + (np.maximum(smooth + 0.06, smooth) - height) * mist
-    return covered, tone + (soft_tone - tone) * mist
+    smooth = blur(height, 0.045, plane.size_px) + np.float32(0.06) + np.float32(0.035) * nap
+    soft_tone = blur(tone, 0.06, plane.size_px) + np.float32(0.075) * nap
+    return height + (smooth - height) * mist, tone + (soft_tone - tone) * mist
+
+
+def _nap(plane: Plane, key: int) -> Field:
+    """Return the sheet's velvet: radial folds as wide as strands, and some of twice that width."""
+    polar = polar_noise(256, 4096, cells=(22.0, 330), seed=key + 20)
+    polar += np.float32(0.6) * polar_noise(256, 4096, cells=(14.0, 140), seed=key + 21)
+    return sample_polar(polar, plane.radius01, plane.turns)
 
 
 def _surface_mm(height: Field, size_px: int) -> Field:

@@ -130,10 +130,14 @@ def _bundle_offset(
     return np.asarray(offset, np.float32)
 
 
-def iris_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
-    """Return every fibre of the iris with points at most ``step_mm`` apart along the radius."""
-    decks = [
+def iris_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> list[Tubes]:
+    """Return every fibre of the iris, deep to high: what a list's later members cover.
+
+    Points are at most ``step_mm`` apart along the radius.
+    """
+    deep, children, bundles, cords = (
         ciliary_tubes(layout, seed, index=index, step_mm=step_mm) for index in range(len(DECKS))
-    ]
+    )
     pupillary = pupillary_tubes(layout, seed, step_mm=step_mm)
-    return join_tubes([*decks, pupillary, collarette_tubes(layout, seed, step_mm=step_mm)])
+    collarette = collarette_tubes(layout, seed, step_mm=step_mm)
+    return [deep, children, join_tubes([bundles, pupillary]), join_tubes([cords, collarette])]

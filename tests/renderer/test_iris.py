@@ -18,7 +18,7 @@ from scipy import ndimage
 from renderer.clip import IRIS_COLOURS
 from renderer.iris import maps as iris
 from renderer.iris.pigment import FAMILIES, srgb_to_linear
-from renderer.textures.sizes import unpack_albedo
+from renderer.iris.statistics import to_lab
 
 SIZE_PX = 512
 
@@ -40,12 +40,6 @@ def blue() -> iris.IrisMaps:
 
 
 @pytest.fixture(scope="module")
-def sharp() -> Any:
-    """One iris fine enough to measure fibres: 12 micrometres a texel."""
-    return unpack_albedo(iris.bake_iris(1, "blue", size_px=1024)["albedo"])
-
-
-@pytest.fixture(scope="module")
 def means() -> dict[str, Any]:
     return {c: iris.bake_iris(2, c, size_px=256)["mean_albedo"] for c in IRIS_COLOURS}
 
@@ -55,74 +49,8 @@ def radius_mm(size_px: int) -> Any:
     return np.hypot(line[:, None], line[None, :])
 
 
-def to_lab(linear: Any) -> Any:
-    """CIE 1976 L*a*b* of linear Rec. 709 under D65."""
-    matrix = np.array(
-        [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
-    )
-    xyz = np.asarray(linear, np.float64) @ matrix.T / np.array([0.9505, 1.0, 1.089])
-    f = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16.0 / 116.0)
-    return np.stack(
-        [
-            116.0 * f[..., 1] - 16.0,
-            500.0 * (f[..., 0] - f[..., 1]),
-            200.0 * (f[..., 1] - f[..., 2]),
-        ],
-        axis=-1,
-    )
-
-
-def around(albedo: Any, radii: Any, count: int = 1440) -> Any:
-    """Return L* along circles, (radii, count)."""
-    half = len(albedo) / 2.0
-    angle = np.arange(count) / count * 2.0 * np.pi
-    lightness = to_lab(albedo)[..., 0]
-    rows = [
-        ndimage.map_coordinates(
-            lightness,
-            [
-                (r * np.sin(angle) / iris.MAP_EDGE_MM + 1.0) * half - 0.5,
-                (r * np.cos(angle) / iris.MAP_EDGE_MM + 1.0) * half - 0.5,
-            ],
-            order=1,
-        )
-        for r in radii
-    ]
-    return np.array(rows)
-
-
 def test_every_clip_colour_has_a_family() -> None:
     assert set(FAMILIES) == set(IRIS_COLOURS)
-
-
-def test_nothing_repeats_around_the_pupil(sharp: Any) -> None:
-    circles = around(sharp, np.linspace(2.3, 5.4, 40))
-    power = np.abs(np.fft.rfft(circles - circles.mean(axis=1, keepdims=True), axis=1)) ** 2
-    correlation = np.fft.irfft(power, axis=1).sum(axis=0)
-    correlation /= correlation[0]
-    assert correlation[20:721].max() < 0.2  # from 5 to 180 degrees in quarter degrees
-
-
-def test_no_seam_where_the_angle_closes(sharp: Any) -> None:
-    circles = around(sharp, np.linspace(2.3, 5.4, 60))
-    steps = np.abs(np.roll(circles, -1, axis=1) - circles).mean(axis=0)
-    seams = steps[[-1, 719]]  # at angle 0 and at 180 degrees, where arctan2 jumps
-    assert (seams < np.percentile(steps, 99.9)).all()
-
-
-def test_crests_and_gaps_differ_in_lightness_and_hardly_in_hue(sharp: Any) -> None:
-    lab = to_lab(sharp)
-    sigma = 0.2 * len(sharp) / (2.0 * iris.MAP_EDGE_MM)
-    detail = lab - ndimage.gaussian_filter(lab, (sigma, sigma, 0.0))
-    radius = radius_mm(len(sharp))
-    zone = (radius > 3.9) & (radius < 5.2)
-    lightness = detail[..., 0]
-    crest, gap = zone & (lightness > 0.0), zone & (lightness < 0.0)
-    split = detail[crest].mean(axis=0) - detail[gap].mean(axis=0)
-    assert 8.0 < split[0] < 18.0
-    assert np.abs(split[1:]).max() < 3.0
-    clear = lightness > 0.5 * lightness[zone].std()
-    assert 0.30 < clear[zone].mean() < 0.42
 
 
 def test_the_pupil_is_nearly_black_and_its_ruff_brown(blue: iris.IrisMaps) -> None:
