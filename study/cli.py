@@ -25,6 +25,7 @@ COMMANDS: Final = (
     "export-scene",
     "bench",
     "gallery",
+    "iris",
     "serve",
     "simulate",
     "export",

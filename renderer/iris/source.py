@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from renderer.clip import ClipSpec
 from renderer.eye.subsurface import Tissue
 from renderer.iris import maps
@@ -30,12 +32,12 @@ class Iris:
     @property
     def mean_albedo(self) -> Field:
         """The mean linear albedo (3,) of the tissue between pupil and root."""
-        return self.maps(1).albedo[0, 0]
+        return np.asarray(self.maps(1).albedo[0, 0])
 
     @property
     def mean_thickness_mm(self) -> Field:
         """The mean thickness (4,) in mm of the layers."""
-        return self.maps(1).thickness_mm[0, 0]
+        return np.asarray(self.maps(1).thickness_mm[0, 0])
 
     @property
     def tissue(self) -> Tissue:

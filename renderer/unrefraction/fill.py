@@ -7,7 +7,7 @@ marked as such: nothing here recovers what was really there.
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, Literal, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ from scipy import ndimage
 
 Field = npt.NDArray[np.float32]
 Mask = npt.NDArray[np.bool_]
+Polar = TypeVar("Polar", Field, Mask)
 
 COLUMNS: Final = 2048  # of the angle
 ROWS: Final = 512  # from the pupil to the edge of the map
@@ -22,6 +23,7 @@ INNER_MM: Final = 1.7
 OUTER_MM: Final = 6.0
 TURN_STEPS: Final = 36  # tried turns, each plain and mirrored
 FEATHER_MM: Final = 0.12
+MODE: Final[tuple[Literal["nearest"], Literal["wrap"]]] = ("nearest", "wrap")
 LEVEL_MM: Final = 0.6  # over which brightness is led from the seen to the filled
 
 
@@ -103,16 +105,14 @@ def _ring_mean(row: Field, seen: Mask) -> Field:
     return row[seen].mean(axis=0) if seen.any() else np.full(3, np.nan, np.float32)
 
 
-def _turned(
-    polar: npt.NDArray[np.generic], turn: int, is_mirrored: bool
-) -> npt.NDArray[np.generic]:
+def _turned(polar: Polar, turn: int, is_mirrored: bool) -> Polar:
     return np.roll(polar[:, ::-1] if is_mirrored else polar, turn, axis=1)
 
 
 def _best_turn(polar: Field, shown: Mask, wanted: Mask) -> tuple[int, bool]:
     """Return the turn, in columns, whose tissue covers most of what is wanted and differs least."""
     sparse = (slice(None, None, 4), slice(None, None, 8))
-    light = ndimage.gaussian_filter(polar.mean(axis=-1), (6, 20), mode=("nearest", "wrap"))
+    light = ndimage.gaussian_filter(polar.mean(axis=-1), (6, 20), mode=MODE)
     best, found = -np.inf, (COLUMNS // 2, False)
     for is_mirrored in (True, False):
         for step in range(TURN_STEPS):
@@ -133,10 +133,9 @@ def _level(difference: Field, both: Mask) -> Field:
     sigma = (rows_sigma / 4, COLUMNS * LEVEL_MM / (2 * np.pi * 4.0) / 2 / 4)
     small = (slice(None, None, 4), slice(None, None, 4))
     weight = both[small].astype(np.float32)
-    mode = ("nearest", "wrap")
-    spread = ndimage.gaussian_filter(weight, sigma, mode=mode) + 1e-4
+    spread = ndimage.gaussian_filter(weight, sigma, mode=MODE) + 1e-4
     parts = [
-        ndimage.gaussian_filter(weight * difference[small][..., c], sigma, mode=mode) / spread
+        ndimage.gaussian_filter(weight * difference[small][..., c], sigma, mode=MODE) / spread
         for c in range(3)
     ]
     coarse = np.clip(np.stack(parts, axis=-1), -0.8, 0.8)

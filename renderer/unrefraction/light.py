@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -126,7 +126,7 @@ def _smooth_waves(light: Field, texels: Texels, seen: Mask) -> Field:
     rings = np.eye(20)[ring]
     waves = _wave_basis(r, angle)
     design = np.concatenate([rings, waves], axis=1)
-    weight = np.ones(len(value))
+    weight: npt.NDArray[np.floating[Any]] = np.ones(len(value))
     ridge = np.concatenate([np.full(20, 1e-3), np.full(waves.shape[1], 2e-3 * len(value))])
     fitted = np.zeros(design.shape[1])
     for _ in range(4):
@@ -154,8 +154,8 @@ def to_reflectance(
     """
     if white is None:
         return np.clip(colour, 0.0, 0.95), 1.0
-    gain = SCLERA / np.maximum(white, 0.02)
+    gain = np.asarray(SCLERA / np.maximum(white, 0.02), np.float32)
     if is_monochrome:
-        gain = np.full(3, gain.mean(), np.float32)
+        gain = np.full_like(gain, gain.mean())
     cast = np.clip(gain / gain[1], 1 / CAST, CAST)
     return np.clip(colour * (gain[1] * cast), 0.0015, 0.95), float(np.max(np.abs(np.log(cast))))

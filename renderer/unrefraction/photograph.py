@@ -189,7 +189,11 @@ def _managed(pixels: Encoded, profile: bytes, notes: list[str]) -> Encoded:
     try:
         source = ImageCms.ImageCmsProfile(io.BytesIO(profile))
         transform = ImageCms.buildTransform(
-            source, ImageCms.createProfile("sRGB"), "RGB", "RGB", renderingIntent=1
+            source,
+            ImageCms.createProfile("sRGB"),
+            "RGB",
+            "RGB",
+            renderingIntent=ImageCms.Intent.RELATIVE_COLORIMETRIC,
         )
     except ImageCms.PyCMSError:
         notes.append("its colour profile cannot be applied: taken as sRGB")

@@ -88,6 +88,11 @@ class Recovery:
     crop: Crop
     found: dict[str, Any]
 
+    @property
+    def gaze_deg(self) -> tuple[float, float]:
+        """The gaze's yaw and pitch that shows a drawn eye as the photograph did."""
+        return math.degrees(self.pose.yaw), math.degrees(self.pose.pitch)
+
 
 def recover_iris(
     photograph: Photograph,
@@ -107,7 +112,9 @@ def recover_iris(
     crop = _crop(photograph, candidate)
     edges = _edges(photograph, crop, candidate)
     tell("fitting the eye")
-    pose = _pose(photograph, edges, candidate, limbus_mm, distance_mm, crop.factor)
+    if distance_mm is None:
+        distance_mm = _distance_mm(photograph, edges, limbus_mm / crop.factor)
+    pose = find_pose(edges, turn=candidate.turn, limbus_mm=limbus_mm, distance_mm=distance_mm)
     _check_pose(photograph, edges, pose, crop)
     tell("following the light through the cornea")
     texels = place_texels(pose, BASE_PX)
@@ -224,20 +231,12 @@ def _edges(photograph: Photograph, crop: Crop, eye: Candidate) -> Edges:
     return edges
 
 
-def _pose(
-    photograph: Photograph,
-    edges: Edges,
-    eye: Candidate,
-    limbus_mm: float,
-    distance_mm: float | None,
-    factor: int,
-) -> Pose:
-    if distance_mm is None:
-        distance_mm = TELECENTRIC_MM
-        if photograph.focal_px is not None:
-            px_per_mm = 2 * edges.limbus.ellipse.major * factor / limbus_mm
-            distance_mm = max(photograph.focal_px / px_per_mm, NEAREST_MM)
-    return find_pose(edges, turn=eye.turn, limbus_mm=limbus_mm, distance_mm=distance_mm)
+def _distance_mm(photograph: Photograph, edges: Edges, limbus_mm: float) -> float:
+    """Return how far the camera was, from its focal length; ``limbus_mm`` per crop's reduction."""
+    if photograph.focal_px is None:
+        return TELECENTRIC_MM
+    px_per_mm = 2 * edges.limbus.ellipse.major / limbus_mm
+    return max(photograph.focal_px / px_per_mm, NEAREST_MM)
 
 
 def _check_pose(photograph: Photograph, edges: Edges, pose: Pose, crop: Crop) -> None:
@@ -246,8 +245,8 @@ def _check_pose(photograph: Photograph, edges: Edges, pose: Pose, crop: Crop) ->
         raise _too_small(photograph, diameter)
     if pose.tilt_deg > MOST_TILT_DEG:
         raise PhotographError(
-            f"{photograph.name}: the eye looks {pose.tilt_deg:.0f} degrees past the camera; at most "
-            f"{MOST_TILT_DEG:.0f} are accepted: look into the lens"
+            f"{photograph.name}: the eye looks {pose.tilt_deg:.0f} degrees past the camera; "
+            f"at most {MOST_TILT_DEG:.0f} are accepted: look into the lens"
         )
     if edges.pupil.share < LEAST_PUPIL_RAYS or edges.limbus.share < LEAST_LIMBUS_RAYS:
         raise PhotographError(
@@ -303,8 +302,8 @@ def _check_light(
     share = float(seen[tissue].mean())
     if clipped > MOST_CLIPPED or float(white.min()) > 0.995:
         raise PhotographError(
-            f"{photograph.name}: over-exposed, {max(clipped, 0.0):.0%} of the iris and the white of "
-            "the eye are burnt out; expose so that the white keeps its shades"
+            f"{photograph.name}: over-exposed, {clipped:.0%} of the iris and its brightest white "
+            f"{float(white.min()):.0%} bright; expose so that the white of the eye keeps its shades"
         )
     if float(white.max()) < LEAST_WHITE:
         raise PhotographError(
@@ -313,8 +312,8 @@ def _check_light(
         )
     if share < LEAST_SEEN:
         raise PhotographError(
-            f"{photograph.name}: {share:.0%} of the iris is seen, lids, lashes and reflections hide "
-            f"the rest; at least {LEAST_SEEN:.0%} is needed"
+            f"{photograph.name}: {share:.0%} of the iris is seen, lids, lashes and reflections "
+            f"hide the rest; at least {LEAST_SEEN:.0%} is needed"
         )
 
 
@@ -387,7 +386,7 @@ def _found(
     photograph: Photograph, pose: Pose, crop: Crop, edges: Edges, share: float
 ) -> dict[str, Any]:
     warnings = list(photograph.notes)
-    if pose.distance_mm == TELECENTRIC_MM or pose.distance_mm > 0.5 * TELECENTRIC_MM:
+    if pose.distance_mm > 0.5 * TELECENTRIC_MM:
         warnings.append("no focal length in the file: taken from far away (--focal, --distance)")
     if share < 0.75:
         warnings.append(f"{1 - share:.0%} of the iris was hidden and is invented")

@@ -24,7 +24,7 @@ SIDE_DEG: Final = 38.0  # lids are never nearer than this to the line between th
 LID_MARGIN_MM: Final = 0.22  # wet edge and shadow of a lid's rim
 RINGS: Final = 24
 GLINT_MARGIN_MM: Final = 0.08
-LIMBUS_CLEAR: Final = 0.45  # where less light than this comes from the iris, it is not used
+LIMBUS_CLEAR: Final = 0.65  # where less light than this comes from the iris, it is not used
 
 
 @dataclass(frozen=True)
@@ -68,9 +68,13 @@ def _strangeness(colour: Field, texels: Texels, outer_mm: float) -> Field:
         here = ring == number
         known = features[here & sides]
         middle = np.median(known, axis=0)
-        spread = 1.4826 * np.median(np.abs(known - middle), axis=0) + [0.12, 0.05, 0.05]
-        far = np.abs(features[here] - middle) / spread
-        evidence[here] = np.clip(np.max(far, axis=-1) - 3.0, -1.0, 4.0)
+        spread = 1.4826 * np.median(np.abs(known - middle), axis=0) + [0.20, 0.06, 0.06]
+        far = (features[here] - middle) / spread
+        # Lids shade the iris below them: darkness alone is weaker evidence than light or hue.
+        light = np.where(far[:, 0] > 0, far[:, 0], -0.4 * far[:, 0])
+        evidence[here] = np.clip(
+            np.maximum(light, np.abs(far[:, 1:]).max(axis=-1)) - 3.5, -1.0, 4.0
+        )
     evidence[(texels.radius_mm < 2.1) | (texels.radius_mm > outer_mm)] = 0.0
     return evidence
 
@@ -131,8 +135,9 @@ def find_lashes(colour: Field, texel_mm: float) -> Mask:
 
     Crypts are as dark relative to their surroundings only where they are wider than a lash.
     """
-    light = colour.mean(axis=-1)
-    closed = ndimage.grey_closing(light, size=max(3, int(0.30 / texel_mm) | 1))
+    light = np.asarray(colour.mean(axis=-1), np.float32)
+    reach = max(3, int(0.30 / texel_mm) | 1)
+    closed = ndimage.grey_closing(light, size=(reach, reach))
     dark = light < 0.22 * closed
     hair = ndimage.binary_opening(dark, iterations=1)
     labels, count = ndimage.label(hair)

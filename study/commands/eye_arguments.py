@@ -115,8 +115,8 @@ def _add_eyes(parser: argparse.ArgumentParser) -> None:
         "--iris",
         type=iris,
         default={},
-        metavar="SEED|COLOUR|SEED:COLOUR",
-        help="which iris, such as 7, brown or 7:brown",
+        metavar="SEED|COLOUR|SEED:COLOUR|FILE",
+        help="which iris, such as 7, brown or 7:brown, or a file from ocularist iris",
     )
     parser.add_argument("--pupil", type=float, metavar="MM", help="diameter of the pupil in mm")
 

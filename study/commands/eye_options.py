@@ -6,6 +6,7 @@ import argparse
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from study.commands.errors import CommandError
@@ -124,14 +125,29 @@ def effect_level(text: str) -> tuple[tuple[str, ...], str, str]:
 
 @reading
 def iris(text: str) -> dict[str, Any]:
-    """Read ``7``, ``brown`` or ``7:brown`` as the fields of a clip's spec."""
+    """Read ``7``, ``brown``, ``7:brown`` or an iris file as the fields of a clip's spec."""
     from renderer.clip import IRIS_COLOURS
 
+    if text.endswith(".npz"):
+        return _iris_file(Path(text))
     seed, _, colour = text.partition(":") if ":" in text or text.isdecimal() else ("", "", text)
     if (seed and not seed.isdecimal()) or (colour and colour not in IRIS_COLOURS):
         raise ValueError(
-            f'"{text}" is no iris; write a seed, a colour or SEED:COLOUR, with a colour of '
-            + ", ".join(IRIS_COLOURS)
+            f'"{text}" is no iris; write a seed, a colour, SEED:COLOUR or the path of an iris file '
+            "(.npz), with a colour of " + ", ".join(IRIS_COLOURS)
         )
     fields: dict[str, Any] = {"iris_colour": colour} if colour else {}
     return fields | ({"iris_seed": int(seed)} if seed else {})
+
+
+def _iris_file(path: Path) -> dict[str, Any]:
+    """Return the fields of an iris that ``ocularist iris`` has taken from a photograph."""
+    from study.design.files import contents_sha256
+
+    try:
+        sha256 = contents_sha256(path)
+    except OSError as error:
+        raise ValueError(
+            f"{path}: {error.strerror}; ocularist iris PHOTO writes an iris file"
+        ) from None
+    return {"iris_file": str(path.absolute()), "iris_sha256": sha256}

@@ -1,6 +1,6 @@
-"""Pictures that a study file names: found beside it, and known by their contents.
+"""Files that a study file names: found beside it, and known by their contents.
 
-A study lists paths relative to its own file. Clips carry the absolute path, to find the picture,
+A study lists paths relative to its own file. Clips carry the absolute path, to find the file,
 and its SHA-256, which alone decides what a clip is.
 """
 
@@ -21,7 +21,9 @@ SUN_KEYS: Final = ("sun_azimuth_deg", "sun_elevation_deg")
 def find_files(data: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
     """Replace the paths in a parsed study file; return it with the faults of what was not found."""
     scene, faults = _with_environment(table_of(data, "scene"), folder)
-    return ({**data, "scene": scene} if scene else dict(data)), faults
+    eye, more = _with_iris(table_of(data, "eye"), folder)
+    found = {name: table for name, table in (("scene", scene), ("eye", eye)) if table}
+    return {**data, **found}, [*faults, *more]
 
 
 def _with_environment(scene: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
@@ -46,6 +48,22 @@ def _with_environment(scene: Data, folder: Path) -> tuple[dict[str, Any], list[F
         faults.append(Fault("scene.environment", f"{path}: {error.strerror}"))
         found = {"environment": "park"}
     return {**scene, **found}, faults
+
+
+def _with_iris(eye: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
+    """Add the contents' hash to ``iris_file = "anna.npz"``, an iris taken from a photograph."""
+    named = eye.get("iris_file")
+    if not isinstance(named, str) or not named:
+        return dict(eye), []
+    path = (folder / named).absolute()
+    colours = Fault("eye.iris_colour", f"{named} brings its own colours; leave this out")
+    faults = [colours] if "iris_colour" in eye else []
+    try:
+        sha256 = contents_sha256(path)
+    except OSError as error:
+        fault = Fault("eye.iris_file", f"{path}: {error.strerror}; ocularist iris PHOTO writes one")
+        return {key: value for key, value in eye.items() if key != "iris_file"}, [*faults, fault]
+    return {**eye, "iris_file": str(path), "iris_sha256": sha256}, faults
 
 
 def contents_sha256(path: Path) -> str:

@@ -132,6 +132,8 @@ class Eye(Part):
 
     iris_seed: Annotated[Whole, Field(ge=0)] = 1
     iris_colour: Annotated[str, clip_value("iris_colour")] = "blue"
+    iris_file: str = ""
+    iris_sha256: str = ""
     pupil_mm: Annotated[Real, clip_value("pupil_mm")] = 4.0
     gaze_yaw_deg: Annotated[Real, clip_value("gaze_yaw_deg")] = 0.0
     gaze_pitch_deg: Annotated[Real, clip_value("gaze_pitch_deg")] = 0.0
@@ -139,6 +141,14 @@ class Eye(Part):
     blink: Annotated[Real, clip_value("blink")] = 0.0
     subsurface_samples: Annotated[Whole, clip_value("subsurface_samples")] = 0
     caustic_pattern: Annotated[str, clip_value("caustic_pattern")] = "computed"
+
+    @model_validator(mode="after")
+    def _accepted_by_clip(self) -> Self:
+        try:
+            ClipSpec(left=Detail(), right=Detail(), **self.model_dump())
+        except ValueError as error:
+            raise refuse(str(error)) from None
+        return self
 
 
 def _check_environment(name: str) -> str:
