@@ -6,19 +6,17 @@ lips, nose, cheeks), melanin and veins tint the skin around the eyes.
 
 from __future__ import annotations
 
-import functools
 from typing import Final
 
 import numpy as np
-from scipy import ndimage
-from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats
 from renderer.camera import eye_centre_mm
 from renderer.head.brows import BROW_COLOUR, stubble
-from renderer.head.face_mesh import SkinPart, face_mesh
+from renderer.head.face_mesh import SkinPart
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import inside_hairline
+from renderer.head.unrolling import unroll_mm
 
 SCALP: Final = 0.55  # what is dark between the hairs, as a share of their colour
 BASE: Final = (0.60, 0.368, 0.280)
@@ -38,8 +36,6 @@ ZONES: Final = (
     (75.0, -20.0, 12.0, 30.0, (1.02, 0.87, 0.85)),  # ears
 )
 TILE_MM: Final = 32.0  # edge of the tile of relief
-FACE_X_MM: Final = (-40, 40)  # where the face's relief stretches a cylinder around the head
-FACE_Y_MM: Final = (-50, 48)
 
 
 def paint(part: SkinPart) -> tuple[Floats, Floats]:
@@ -111,32 +107,5 @@ def _gloss(part: SkinPart) -> Floats:
 
 
 def detail_coordinates(points_mm: Floats) -> Floats:
-    """Return (n, 2) coordinates in the tile of relief: wound around the head, in tiles."""
-    x, y, z = points_mm.T
-    longer = ndimage.map_coordinates(
-        _surplus_width(), np.array([y - FACE_Y_MM[0], x - FACE_X_MM[0]]), order=1, mode="nearest"
-    )
-    wound = 95.0 * np.arctan2(x, z + 95.0) + longer
-    is_ear = (np.abs(x) > 71.0) & (z < -60.0) & (np.abs(y + 15.0) < 50.0)
-    return np.column_stack([np.where(is_ear, z, wound), y]) / TILE_MM
-
-
-@functools.cache
-def _surplus_width() -> Floats:
-    """Return by how many mm the way over the face from its middle exceeds that on a cylinder.
-
-    A grid (y, x) of 1 mm over FACE_Y_MM and FACE_X_MM: without it pores smear on the nose's flanks.
-    """
-    x = np.arange(FACE_X_MM[0], FACE_X_MM[1] + 1.0)
-    y = np.arange(FACE_Y_MM[0], FACE_Y_MM[1] + 1.0)
-    grid = np.stack(np.meshgrid(x, y), axis=-1)
-    front = face_mesh().fine.points_mm
-    front = front[front[:, 2] > -10.0]
-    distance, near = map(np.asarray, cKDTree(front[:, :2]).query(grid, k=4))
-    share = 1 / (distance + 0.3) ** 2
-    depth = (front[near, 2] * share).sum(axis=-1) / share.sum(axis=-1)
-    depth = ndimage.gaussian_filter(depth, (8.0, 1.5), mode="nearest")
-    over_face = np.hypot(1.0, np.gradient(depth, axis=1))
-    around = np.gradient(95.0 * np.arctan2(x, depth + 95.0), axis=1)
-    way = np.cumsum(over_face - around, axis=1)
-    return np.asarray(ndimage.gaussian_filter(way - way[:, [len(x) // 2]], 2.0, mode="nearest"))
+    """Return (n, 2) coordinates in the tile of relief, in tiles."""
+    return unroll_mm(points_mm) / TILE_MM
