@@ -108,6 +108,9 @@ class FrameRenderer:
         scene.head.draw(**camera, light=scene.light)
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         visible = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
+        for eye in view.eyes:
+            if (self.spec.left, self.spec.right)[eye].reflection in {"high", "ultra"}:
+                scene.head.draw_tears(eye, **camera, light=scene.light)
         scene.crowd.draw(**camera, time_s=time_s)
         scene.surroundings.draw_background(view_matrix=view.view_matrix, projection=view.projection)
         scene.head.draw_hair(**camera, light=scene.light)

@@ -23,8 +23,8 @@ BUMP_MM: Final = (-14.3, 1.45)  # the caruncle's middle and half width along x
 MEMBRANE_START_MM: Final = 9.6
 DRAWN: Final = (0.28, 0.12)  # share of the cornea's way to nose and temple that drags the fold
 FULL_OPENING_MM: Final = 3.0  # of the lids, at which the caruncle stands out fully
-ROWS: Final = 52
-COLUMNS: Final = 28
+CARUNCLE_GRID: Final = (52, 28)  # points from canthus inwards, and from lid to lid
+MEMBRANE_GRID: Final = (22, 16)
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Corner:
 def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     """Return the inner corner: conjunctiva off the sclera, the plica's fold, the caruncle."""
     drawn = _drawn_mm(pose)
-    sheet = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM + drawn, pose)
+    sheet = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM + drawn, pose, grid=CARUNCLE_GRID)
     b = sheet.upwards
     x, y, z = (sheet.points_mm[..., axis] for axis in range(3))
     room = _ease(sheet.opening_mm / FULL_OPENING_MM)
@@ -64,7 +64,7 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     cover = np.maximum(cover, _beside_globe(sheet.points_mm))
     return Corner(
         sheet.points_mm.reshape(-1, 3),
-        _quads(),
+        _quads(CARUNCLE_GRID),
         np.clip(1.25 * hump, 0, 1).ravel(),
         (0.95 * _ease((crescent + 12.7) / 2.4)).ravel(),
         cover.ravel(),
@@ -91,7 +91,7 @@ def _lumps(x: Floats, y: Floats) -> Floats:
 
 def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
     """Return the conjunctiva in the outer corner."""
-    sheet = _sheet(LATERAL_MM[0], MEMBRANE_START_MM, pose)
+    sheet = _sheet(LATERAL_MM[0], MEMBRANE_START_MM, pose, grid=MEMBRANE_GRID)
     a, b = sheet.inwards, sheet.upwards
     globe = on_globe(sheet.points_mm[..., :2], pose)
     near, under = _ease(a / 0.75), _ease((a - 0.75) / 0.25)
@@ -99,7 +99,7 @@ def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
     sheet.points_mm[..., 2] = hollow * (1 - near) + (globe + 0.05 - 0.5 * under) * near
     return Corner(
         sheet.points_mm.reshape(-1, 3),
-        _quads()[:, ::-1],
+        _quads(MEMBRANE_GRID)[:, ::-1],
         np.zeros(a.size),
         (0.9 * _ease(a / 0.5)).ravel(),
         np.maximum(1.0 - _ease((a - 0.1) / 0.7), _beside_globe(sheet.points_mm)).ravel(),
@@ -108,7 +108,7 @@ def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
 
 @dataclass(frozen=True)
 class _Sheet:
-    """A grid between the rims, (ROWS, COLUMNS): points in mm, places from canthus inwards and
+    """A grid between the rims: points in mm, places from canthus inwards and
 
     from lower to upper rim, 0 to 1, and how far apart the rims are there.
     """
@@ -119,9 +119,10 @@ class _Sheet:
     opening_mm: Floats
 
 
-def _sheet(corner_x: float, inner_x: float, pose: LidPose) -> _Sheet:
+def _sheet(corner_x: float, inner_x: float, pose: LidPose, *, grid: tuple[int, int]) -> _Sheet:
     """Span a sheet between the rims from a canthus inwards."""
-    a, b = np.meshgrid(np.linspace(0, 1, ROWS), np.linspace(-0.03, 1.04, COLUMNS), indexing="ij")
+    rows, columns = grid
+    a, b = np.meshgrid(np.linspace(0, 1, rows), np.linspace(-0.03, 1.04, columns), indexing="ij")
     # The inner edge is a crescent around the pupil.
     crescent = inner_x + np.sign(corner_x) * 1.2 * (2 * np.clip(b, 0, 1) - 1) ** 2
     x = corner_x + (crescent - corner_x) * a
@@ -140,7 +141,8 @@ def _ease(x: Floats) -> Floats:
     return np.asarray(x * x * (3 - 2 * x))
 
 
-def _quads() -> Indices:
-    i, j = np.meshgrid(np.arange(ROWS - 1), np.arange(COLUMNS - 1), indexing="ij")
-    corners = [(i + di) * COLUMNS + j + dj for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1))]
+def _quads(grid: tuple[int, int]) -> Indices:
+    rows, columns = grid
+    i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
+    corners = [(i + di) * columns + j + dj for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1))]
     return np.stack(corners, axis=-1).reshape(-1, 4)

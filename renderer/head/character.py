@@ -18,7 +18,8 @@ from renderer.camera import INTEROCULAR_MM
 
 # MakeHuman's globes have 15 mm radius, ours 11.75: her lids meet ours when the head steps back.
 SET_BACK_MM: Final = 4.9
-BROW_MM: Final = 4.8
+BROW_MM: Final = 5.6
+CHEEK_MM: Final = 1.8
 PHENOTYPE: Final = {"gender": 0.1, "age": 0.56, "muscle": 0.5, "weight": 0.47, "proportions": 0.7}
 RACES: Final = {"caucasian": 0.75, "asian": 0.13, "african": 0.12}
 # Away from the average that MakeHuman starts from: an average of faces looks like a doll.
@@ -60,6 +61,7 @@ def figure() -> Figure:
     vertices = (vertices - middle) * INTEROCULAR_MM / (centres[0][0] - centres[1][0])
     vertices[:, 2] -= SET_BACK_MM
     vertices[:, 2] -= _brow_ridge(vertices)
+    vertices[:, 2] += _under_eyes(vertices)
     rig = fit_rig(vertices)
     return Figure(mesh, pose_vertices(vertices, rig, rotations=_arms_down()), rig)
 
@@ -68,7 +70,14 @@ def _brow_ridge(vertices: Floats) -> Floats:
     """Return by how many mm to push back the brow, which hangs far over MakeHuman's eyes."""
     x, y, z = vertices.T
     sideways = np.exp(-(((np.abs(x) - 24.0) / 26.0) ** 2))
-    return np.where(z > 0.0, BROW_MM * sideways * np.exp(-(((y - 20.0) / 10.0) ** 2)), 0.0)
+    return np.where(z > 0.0, BROW_MM * sideways * np.exp(-(((y - 18.5) / 11.0) ** 2)), 0.0)
+
+
+def _under_eyes(vertices: Floats) -> Floats:
+    """Return by how many mm to bring forward the upper cheek, which the smaller globes bare."""
+    x, y, z = vertices.T
+    sideways = np.exp(-(((np.abs(x) - 38.0) / 18.0) ** 2))
+    return np.where(z > -25.0, CHEEK_MM * sideways * np.exp(-(((y + 16.0) / 10.0) ** 2)), 0.0)
 
 
 def _arms_down() -> dict[str, Floats]:

@@ -13,7 +13,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import Matrix
+from renderer.camera import Matrix, eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.eye.lids import LidRims
 from renderer.head.brows import grow_brow
@@ -28,6 +28,7 @@ from renderer.head.light import light_strands, light_surfaces, open_sky
 from renderer.head.skin_maps import SkinMaps
 from renderer.head.strands import StrandMesh, blending
 from renderer.head.surfaces import cap_surface, cloth_surface, skin_surfaces
+from renderer.head.tears import TearLine
 from renderer.light import Light
 from renderer.program import build_program
 
@@ -52,6 +53,7 @@ class Head:
             "fabric": build_program(gl, "skin.vert", fragment="fabric.frag"),
             "hair": build_program(gl, "hair.vert", fragment="hair.frag"),
             "depth": build_program(gl, "depth.vert", fragment="depth.frag"),
+            "tears": build_program(gl, "tears.vert", fragment="tears.frag"),
         }
         self._skin_maps = SkinMaps(gl, face_mesh())
         self._knit = TilePyramid(gl, knit_tile())
@@ -67,6 +69,9 @@ class Head:
             gl, self._surfaces, whole=self.draw_depth, without_lids=self._draw_depth_without_lids
         )
         self._hair = _grow_hair(gl, self._face)
+        self._tears = [
+            TearLine(gl, self._programs["tears"], self._face.lids[eye], eye=eye) for eye in (0, 1)
+        ]
         self._lit_by: Light | None = None
 
     def draw(
@@ -119,6 +124,27 @@ class Head:
                 veil.draw(self._programs["skin"], clip, camera_mm=camera)
             for mesh, _ in self._hair:
                 mesh.draw(program, clip, camera_mm=camera)
+
+    def draw_tears(
+        self,
+        eye: int,
+        *,
+        view_matrix: Matrix,
+        projection: Matrix,
+        camera_mm: npt.ArrayLike,
+        light: Light,
+    ) -> None:
+        """Draw the tear line of the viewer's left (0) or right (1) eye over lids and globe."""
+        distance = float(np.linalg.norm(np.asarray(camera_mm) - eye_centre_mm(eye)))
+        if distance > CLOSE_MM:
+            return
+        self._tears[eye].draw(
+            u_view_matrix=view_matrix,
+            u_projection=projection,
+            u_camera_mm=camera_mm,
+            u_mm_per_px=distance / self._pixel_per_mm(projection),
+            **light.uniforms(),
+        )
 
     def draw_depth(self, matrix: npt.ArrayLike) -> None:
         """Draw what is opaque into a depth map with a world-to-clip matrix."""

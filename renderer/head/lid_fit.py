@@ -23,7 +23,7 @@ TUCK_MM: Final = 3.5  # from the inner edge back to the patch's innermost ring
 MARGIN_MM: Final = 1.75  # lid thickness at the rim
 MARGIN_TURN: Final = (0.5, 0.1)  # of the margin against the globe's normal, lower and upper lid
 MEETING_MM: Final = 3.5  # lids that are nearer to each other turn their margins face to face
-OUTLINE_MM: Final = (24.5, 22.5, 17.5, 17.0)  # patch ends: temple, nose, up, down of (0, 0)
+OUTLINE_MM: Final = (25.5, 22.5, 17.5, 19.5)  # patch ends: temple, nose, up, down of (0, 0)
 ENDING: Final = (0.0, 0.9, 1.8, 2.7)  # of the last rings, in mm beyond the outline
 SETTLED: Final = (0.25, 0.6, 0.9, 1.0, 1.0, 1.0, 1.0)  # how far the last rings obey the face
 AROUND: Final = 176
@@ -54,7 +54,9 @@ class Socket:
     def __init__(self, points_mm: Floats) -> None:
         """Take points (n, 3) of the face's skin in patch space; those on its lids are dropped."""
         x, y, _ = points_mm.T
-        on_lids = ((x + 1.5) / 19.0) ** 2 + ((y - np.where(y > 0, 1.0, -0.5)) / 10.0) ** 2 < 1.0
+        # Below, the lids reach down to the cheek: the hollow around MakeHuman's globe goes too.
+        up, down = (y - 1.0) / 10.0, (y + 0.5) / 14.5
+        on_lids = ((x - 0.5) / 21.0) ** 2 + np.where(y > 0, up, down) ** 2 < 1.0
         kept = _thinned(points_mm[~on_lids], spacing_mm=1.7)
         self._surface = RBFInterpolator(kept[:, :2], kept[:, 2], smoothing=0.02)
 

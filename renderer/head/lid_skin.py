@@ -23,6 +23,7 @@ LEAST_PLATFORM_MM: Final = 0.9  # of skin below the crease that stays in sight i
 FOLD_MM: Final = 1.9  # how far the upper lid's fold stands out over the crease
 FOLD_FADES_MM: Final = 4.5  # of the lid's way down, over which the fold is drawn smooth
 FULLNESS_MM: Final = 1.2  # of the soft tissue between the fold and the brow
+BRIDGE_SAG_MM: Final = 0.5  # of the skin from the lower lid straight to the cheek
 OUTER_SHARES: Final = (0.12, 0.27, 0.44, 0.61, 0.77, 0.9)  # rings between the fold and the outline
 
 
@@ -126,11 +127,14 @@ def _fold_height(columns: Columns, platform: Floats, fold: Floats) -> Callable[[
     slope = 0.6 * platform + 1.5 + 1.1 * face(platform + 3.0)
     missing = np.maximum(FOLD_MM * fold - face(platform + 1.2), 0.0)
 
+    nose = smooth_step((-columns.edge[:, 0] - 5.0) / 6.0)
+    fullness = FULLNESS_MM * np.maximum(1 - columns.canthus, nose)
+
     def height(distance: Floats) -> Floats:
         lip = smooth_step((distance - platform) / 1.3)
         fade = 1 - smooth_step((distance - platform - 1.0) / (0.75 * (columns.end_mm - platform)))
         full = (distance - platform) / (columns.end_mm - platform)
-        full = FULLNESS_MM * np.sin(np.pi * np.clip(full, 0, 1)) ** 1.5 * (1 - columns.canthus)
+        full = fullness * np.sin(np.pi * np.clip(full, 0, 1)) ** 1.5
         return face(distance) + missing * lip * fade + full
 
     return height
@@ -150,10 +154,14 @@ def lower_skin(columns: Columns) -> list[Floats]:
 
 def _lower_ring(columns: Columns, distance: Floats, away: Floats) -> Floats:
     xy, z = columns.on_lid(distance)
+    z0, cheek = columns.edge[:, 2], columns.face(columns.at(columns.end_mm))
     free = smooth_step((distance - 0.2) / (1.5 + 2.0 * columns.canthus))
     z = z + free * (soft_max(columns.face(xy), z, 3.0) - z)
-    roll = 0.40 * np.exp(-(((distance - 3.0) / 2.0) ** 2))
-    furrow = -0.25 * np.exp(-(((distance - 6.6) / 1.3) ** 2))
+    # Fat and muscle bridge the hollow between globe and cheek.
+    bridge = z0 + (cheek - z0) * (distance / columns.end_mm) ** 0.8 - BRIDGE_SAG_MM
+    z = z + free * (soft_max(bridge, z, 2.0) - z)
+    roll = 0.22 * np.exp(-(((distance - 2.6) / 1.7) ** 2))
+    furrow = -0.16 * np.exp(-(((distance - 6.2) / 1.3) ** 2))
     return np.column_stack([xy, columns.settled(distance, xy, z + (roll + furrow) * away)])
 
 

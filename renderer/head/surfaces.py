@@ -59,8 +59,8 @@ def skin_surfaces(gl: moderngl.Context, face: FaceMesh) -> dict[str, Surface]:
     surfaces = {}
     for name, part in parts.items():
         albedo, gloss = paint(part)
-        eye = int(name[-1]) if name.startswith("patch") else None
-        rows = _skin_rows(part, albedo, eye)
+        lid = int(name[-1]) if name.startswith("patch") else None
+        rows = _skin_rows(part, albedo, lid)
         solid, sheer = _by_cover(part) if name.startswith("corner") else (part.triangles, None)
         surfaces[name] = Surface(
             part.points_mm,
@@ -68,8 +68,8 @@ def skin_surfaces(gl: moderngl.Context, face: FaceMesh) -> dict[str, Surface]:
             part.triangles,
             gloss,
             part.wet,
-            CellMesh(gl, rows, solid, turn=None if eye is None else AROUND_COLUMN),
-            None if eye is None else CellMesh(gl, rows, _thinned_patch(eye), turn=AROUND_COLUMN),
+            CellMesh(gl, rows, solid, turn=None if lid is None else AROUND_COLUMN),
+            None if lid is None else CellMesh(gl, rows, _thinned_patch(lid), turn=AROUND_COLUMN),
             None if sheer is None else CellMesh(gl, rows, sheer),
         )
     return surfaces

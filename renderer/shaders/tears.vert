@@ -1,0 +1,19 @@
+// Provides: the tear line's vertices. World space in millimetres.
+
+in vec3 in_position;
+in vec3 in_normal;
+in vec2 in_water;     // 0 on the globe .. 1 on the lid; amount of water
+
+uniform mat4 u_view_matrix;
+uniform mat4 u_projection;
+
+out vec3 v_world;
+out vec3 v_normal;
+out vec2 v_water;
+
+void main() {
+    v_world = in_position;
+    v_normal = in_normal;
+    v_water = in_water;
+    gl_Position = u_projection * u_view_matrix * vec4(in_position, 1.0);
+}
