@@ -12,7 +12,7 @@ import moderngl
 import numpy as np
 
 from renderer.crowd.crowd import Crowd
-from renderer.exchange.meshes import Floats, Mesh, joined
+from renderer.exchange.meshes import Floats, Mesh, Triangles, joined
 from renderer.head.buffers import STATIC, CellMesh
 from renderer.head.head import Head
 from renderer.head.strands import LAYOUT, StrandMesh
@@ -37,7 +37,8 @@ def head_meshes(head: Head) -> Iterator[tuple[str, Mesh]]:
     """Yield the main character's surfaces by name: skin, lids, corners of the eyes, clothes."""
     for name, surface in head._surfaces.items():
         if name not in DISTANT:
-            yield NAMES.get(name, name), read_cells(surface.mesh)
+            parts = [read_cells(mesh) for mesh in (surface.mesh, surface.veil) if mesh is not None]
+            yield NAMES.get(name, name), joined(parts)
 
 
 def hair_meshes(head: Head) -> Iterator[tuple[str, Mesh]]:
@@ -70,7 +71,16 @@ def read_cells(mesh: CellMesh) -> Mesh:
     """Read a surface of the head back: positions, normals, albedo."""
     rows = _columns(mesh._static, *STATIC)
     triangles = np.frombuffer(mesh._index.read(), np.int32).reshape(-1, 3)
-    return Mesh(rows["in_position"], _unit(rows["in_normal"]), triangles, albedo=rows["in_albedo"])
+    normals = _without_gaps(_unit(rows["in_normal"]), triangles)
+    return Mesh(rows["in_position"], normals, triangles, albedo=rows["in_albedo"])
+
+
+def _without_gaps(normals: Floats, triangles: Triangles) -> Floats:
+    """Give vertices without a normal, where a surface ends in a point, that of their neighbours."""
+    for vertex in np.flatnonzero(np.linalg.norm(normals, axis=1) < 0.5):
+        beside = triangles[(triangles == vertex).any(axis=1)].ravel()
+        normals[vertex] = _unit(normals[beside].sum(axis=0))
+    return normals
 
 
 def read_strands(strands: StrandMesh) -> Mesh:

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from renderer.exchange.meshes import Floats, Mesh, Triangles
+from renderer.exchange.meshes import Floats, Mesh, Triangles, joined
 from renderer.eye.anatomy import (
     IRIS_MAP_RADIUS_MM,
     IRIS_Z_MM,
@@ -84,19 +84,32 @@ def _iris(
 ) -> Mesh:
     map_radius = np.linspace(MAP_PUPIL_RADIUS_MM, IRIS_MAP_RADIUS_MM, rings)
     radius = stretched(map_radius, pupil_radius_mm)
-    profile = np.column_stack([radius, np.full(rings, IRIS_Z_MM)])
-    limbus_z = float(surface_height(LIMBUS_RADIUS_MM)[0])
-    # Seen from within, so the wall goes on outwards and up: the same winding.
-    wall = np.array([[LIMBUS_RADIUS_MM, IRIS_Z_MM], [LIMBUS_RADIUS_MM, limbus_z]])
-    points, triangles = revolved(np.concatenate([profile, wall[1:]]), segments)
+    points, triangles = revolved(np.column_stack([radius, np.full(rings, IRIS_Z_MM)]), segments)
     on_map = revolved(np.column_stack([map_radius, np.zeros(rings)]), segments)[0][:, :2]
-    edge = on_map[-segments:]
-    on_map = np.concatenate([on_map, edge])
     uv = 0.5 + 0.5 * on_map * [-1.0 if mirror else 1.0, 1.0] / MAP_EDGE_MM
     if height_mm is not None:
-        flat = len(points) - segments
-        points[:flat, 2] += _sampled(height_mm, uv[:flat]) - _mean_height(height_mm)
-    return Mesh(points, _vertex_normals(points, triangles), triangles, uv)
+        points[:, 2] += _sampled(height_mm, uv) - _mean_height(height_mm)
+    tissue = Mesh(points, _vertex_normals(points, triangles), triangles, uv)
+    return joined([tissue, _wall(points[-segments:], uv[-segments:])])
+
+
+def _wall(root: Floats, uv: Floats) -> Mesh:
+    """Return the wall from the iris's root up to the limbus, in the colour of the maps' edge."""
+    segments = len(root)
+    limbus = root.copy()
+    limbus[:, 2] = float(surface_height(LIMBUS_RADIUS_MM)[0])
+    inward = unit(-root * [1.0, 1.0, 0.0])
+    this = np.arange(segments)
+    following = (this + 1) % segments
+    # Seen from the axis: the winding of the iris goes on outwards and then up.
+    triangles = np.concatenate(
+        [
+            np.column_stack([this, segments + this, segments + following]),
+            np.column_stack([this, segments + following, following]),
+        ]
+    )
+    both = np.concatenate
+    return Mesh(both([root, limbus]), both([inward, inward]), triangles, both([uv, uv]))
 
 
 def sclera_uv(positions: Floats, *, mirror: bool) -> Floats:

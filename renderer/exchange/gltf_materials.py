@@ -19,8 +19,8 @@ from renderer.detail import Detail
 from renderer.exchange.gltf_buffer import GltfBuffer
 from renderer.eye.anatomy import CORNEA_IOR, IRIS_DEPTH_MM
 from renderer.eye.sclera import sclera_maps
-from renderer.iris.maps import iris_maps
 from renderer.iris.pigment import linear_to_srgb
+from renderer.iris.source import iris_of
 
 EXTENSIONS: Final = (
     "KHR_materials_clearcoat",
@@ -71,7 +71,7 @@ def _sclera(buffer: GltfBuffer, spec: ClipSpec, detail: Detail) -> gltf.Material
 
 def _iris(buffer: GltfBuffer, spec: ClipSpec, detail: Detail) -> gltf.Material:
     size = int(detail.setting("texture", "iris_map_px"))
-    maps = iris_maps(spec.iris_seed, spec.iris_colour, size_px=size)
+    maps = iris_of(spec).maps(size)
     material = _diffuse(buffer, maps.albedo, f"iris_{size}", roughness=1.0)
     if detail.texture in ("high", "ultra"):
         texture = buffer.texture(packed(maps.normal), f"iris_normal_{size}")

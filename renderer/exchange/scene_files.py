@@ -25,7 +25,7 @@ from renderer.exchange.readme import README
 from renderer.exchange.textures import write_maps
 from renderer.eye.eyes import EyeModel
 from renderer.frame import FrameRenderer
-from renderer.iris.maps import iris_maps
+from renderer.iris.source import iris_of
 from renderer.manifest import write_atomically
 from renderer.picture import EXPOSURE
 from renderer.sources import code_version
@@ -159,7 +159,7 @@ def _height_mm(renderer: FrameRenderer, eye: int) -> Any:
     spec = renderer.spec
     detail: Detail = (spec.left, spec.right)[eye]
     size = int(detail.setting("texture", "iris_map_px"))
-    return iris_maps(spec.iris_seed, spec.iris_colour, size_px=size).height_mm
+    return iris_of(spec).maps(size).height_mm
 
 
 def _write_json(path: Path, values: Entry) -> None:
