@@ -1,4 +1,4 @@
-"""What renderer tests share: one GL context (opening one costs 0.3 s) and average lids."""
+"""What renderer tests share: one GL context (opening one costs 0.3 s), a scene, average lids."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ import moderngl
 import numpy as np
 import pytest
 
+from renderer.clip import ClipSpec
 from renderer.context import create_context
+from renderer.detail import Detail
 from renderer.eye.lids import Curve, LidRims
+from renderer.scene import Scene, build_scene
 
 LID_SHELL_MM: Final = 12.3  # radius on which the inner edge of the rim slides over the globe
 LATERAL_CANTHUS_MM: Final = 13.0  # towards the temple
@@ -22,6 +25,12 @@ def gl() -> Iterator[moderngl.Context]:
     context = create_context()
     yield context
     context.release()
+
+
+@pytest.fixture(scope="session")
+def standard_scene(gl: moderngl.Context) -> Scene:
+    """The scene of a clip with no wishes about it: building one costs seconds."""
+    return build_scene(gl, ClipSpec(left=Detail(), right=Detail()))
 
 
 @pytest.fixture
