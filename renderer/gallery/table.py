@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from renderer.gallery.certificate import certificate_strips
+from renderer.gallery.photograph import PHOTOGRAPH
 from renderer.gallery.scenes import SCENES
 from renderer.gallery.strips import STRIPS, Strip
 
@@ -14,4 +15,4 @@ def gallery_strips(certificate: Path) -> tuple[Strip, ...]:
 
     The strips that share a scene stand together.
     """
-    return (*STRIPS, *SCENES, *certificate_strips(certificate))
+    return (*STRIPS, PHOTOGRAPH, *SCENES, *certificate_strips(certificate))
