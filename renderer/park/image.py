@@ -1,8 +1,8 @@
 """A user's HDR picture as surroundings: read, checked, its sun made a light of its own.
 
-Pure numpy; ``surroundings`` brings it to the GPU. The picture is scaled so that a white Lambertian
-surface facing the sun, or where there is none the brightest side, leaves with radiance 1: what a
-photographer's exposure would do. ``environment_exposure_ev`` moves it from there.
+Pure numpy; ``surroundings`` brings it to the GPU. The picture is scaled so that the brightest side
+of a white Lambertian ball leaves with radiance 1, as a photographer would expose it.
+``environment_exposure_ev`` moves it from there.
 """
 
 from __future__ import annotations
@@ -101,9 +101,9 @@ def light_from(
     parts = separate_sun(radiance)
     direction = _turned(parts.direction, turn_deg)
     ambient = sh_of_lat_long(parts.rest, turn_deg=turn_deg)
-    has_sun = bool(parts.irradiance.any())
-    side = direction[None] if has_sun else _sides()
-    white = ((irradiance(ambient, side) + parts.irradiance) @ LUMINANCE).max() / math.pi
+    sides = np.concatenate([direction[None], lat_long_directions(16, 32).reshape(-1, 3)])
+    from_sun = np.maximum(sides @ direction, 0.0)[:, None] * parts.irradiance
+    white = ((irradiance(ambient, sides) + from_sun) @ LUMINANCE).max() / math.pi
     scale = 2.0**exposure_ev / white
     return ImageEnvironment(
         np.minimum(parts.rest * np.float32(scale), np.float32(BRIGHTEST)),
@@ -121,10 +121,6 @@ def _turned(direction: Vector, turn_deg: float) -> Vector:
     sine, cosine = math.sin(math.radians(turn_deg)), math.cos(math.radians(turn_deg))
     x, y, z = direction
     return np.array([x * cosine + z * sine, y, z * cosine - x * sine])
-
-
-def _sides() -> Vector:
-    return lat_long_directions(16, 32).reshape(-1, 3)
 
 
 def _shrunk(radiance: Radiance) -> Radiance:

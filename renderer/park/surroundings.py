@@ -120,12 +120,14 @@ class Surroundings:
         panorama.repeat_y = False
         target = self.gl.framebuffer([panorama])
         with self.gl.scope(target, moderngl.NOTHING):
-            cube = self.cube(BACKGROUND_CUBE_PX)
+            cube, sky = self.cube(BACKGROUND_CUBE_PX), self.sky  # both may draw themselves first
             target.use()
-            self._spread(cube, defocus, radius=radius)
+            self._spread(cube, sky, defocus=defocus, radius=radius)
         return panorama
 
-    def _spread(self, cube: moderngl.TextureCube, defocus: Defocus, *, radius: float) -> None:
+    def _spread(
+        self, cube: moderngl.TextureCube, sky: Sky, *, defocus: Defocus, radius: float
+    ) -> None:
         program = build_program(self.gl, "screen.vert", fragment="defocus.frag")
         # Points on the disc are this far apart, in texels of the cube's finest level.
         spacing = radius * math.sqrt(math.pi / defocus.points) * BACKGROUND_CUBE_PX / 2
@@ -135,8 +137,8 @@ class Surroundings:
             u_radius_rad=radius,
             u_points=defocus.points,
             u_lod=max(0.0, math.log2(spacing) + 0.5),
-            u_sun_towards=self.sky.sun_direction,
-            u_sun_radiance=np.minimum(self.sky.sun_irradiance / (np.pi * radius**2), 6.0e4),
+            u_sun_towards=sky.sun_direction,
+            u_sun_radiance=np.minimum(sky.sun_irradiance / (np.pi * radius**2), 6.0e4),
         )
         self.gl.vertex_array(program.gl_program, []).render(moderngl.TRIANGLES, vertices=3)
 
