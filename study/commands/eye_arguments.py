@@ -141,7 +141,7 @@ def _add_surroundings(parser: argparse.ArgumentParser) -> None:
         "--environment-exposure",
         type=float,
         metavar="EV",
-        help="brighten that picture, in stops; at 0 (default) the brightest side of a white ball is white",
+        help="brighten that picture, in stops; 0 (default): a white ball's brightest side is white",
     )
     parser.add_argument(
         "--sun",
