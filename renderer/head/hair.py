@@ -1,7 +1,8 @@
 """The main character's hair, combed back and tied: a cap for the mass, ribbons for its look.
 
 Pure numpy, world space in mm. The cap is the scalp lifted by the hair's thickness; thousands of
-narrow ribbons follow the comb over it and fray at the hairline.
+locks follow the comb over it, densest where they root along the hairline. Single hairs and short
+new ones blur the line itself.
 """
 
 from __future__ import annotations
@@ -13,16 +14,38 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.head.face_mesh import FaceMesh
-from renderer.head.lashes import Strands
+from renderer.head.face_mesh import FaceMesh, vertex_normals
+from renderer.head.lashes import Strands, joined
 
 COLOUR: Final = (0.060, 0.033, 0.019)
 KNOT_MM: Final = (0.0, 18.0, -205.0)  # where the comb gathers the hair
 THICKNESS_MM: Final = 9.0
-STRANDS: Final = 2600
-WISPS: Final = 1200
-POINTS: Final = 6
-RIBBON_MM: Final = 1.9  # a ribbon stands for a lock of hairs; its shader draws strands on it
+SUNK_MM: Final = 1.5  # of the mass at the hairline, which only hairs draw
+POINTS: Final = 9
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Locks of one kind: how many, how long and wide in mm, where they root.
+
+    ``border_mm`` is how fast their roots thin out away from the hairline; ``below_mm`` how far they
+    may root before it; ``stray`` how much their direction strays from the comb, in radians.
+    """
+
+    count: int
+    length_mm: float
+    width_mm: tuple[float, float]
+    border_mm: float
+    below_mm: float
+    stray: float
+    lift_mm: float
+
+
+LAYERS: Final = (
+    Layer(3000, 88.0, (0.8, 1.6), 14.0, -1.0, 0.05, 0.6),
+    Layer(2000, 46.0, (0.25, 0.7), 4.0, 2.0, 0.12, 0.6),
+    Layer(1000, 15.0, (0.05, 0.09), 2.5, 4.5, 0.45, 0.9),  # just grown
+)
 # The hairline as height in mm over the azimuth around the head (0 front, 180 back), face to nape.
 HAIRLINE: Final = np.array(
     [
@@ -48,9 +71,13 @@ AXIS_Z_MM: Final = -82.0  # the head's vertical axis behind the eyes
 
 @dataclass(frozen=True)
 class HairCap:
-    """The mass under the ribbons: points (n, 3) mm, normals, triangles, comb direction (n, 3)."""
+    """The mass under the locks: points (n, 3) mm, normals, triangles, comb direction (n, 3).
+
+    ``foot_mm`` (n, 3) is what locks lie on; before the hairline the mass itself is below the skin.
+    """
 
     points_mm: Floats
+    foot_mm: Floats
     normals: Floats
     triangles: Indices
     growth: Indices  # triangles that hair grows on; they reach over the hairline
@@ -66,21 +93,44 @@ def inside_hairline(points: Floats) -> Floats:
 def hair_cap(face: FaceMesh) -> HairCap:
     """Return the cap that covers the scalp."""
     scalp = face.coarse
-    points, normals = scalp.points_mm, scalp.normals
+    above = inside_hairline(scalp.points_mm)
+    is_ear = _is_ear(scalp.points_mm)
+    near = (above[scalp.triangles] > -12.0).all(axis=1) & ~is_ear[scalp.triangles].any(axis=1)
+    used, rows = np.unique(scalp.triangles[near], return_inverse=True)
+    points, normals, rows = _refined(
+        scalp.points_mm[used], scalp.normals[used], rows.reshape(-1, 3)
+    )
     above = inside_hairline(points)
-    is_ear = _is_ear(points)
     lift = THICKNESS_MM * _ease((above - 2.0) / 38.0)
-    chosen = (above[scalp.triangles] > -6.0).all(axis=1) & ~is_ear[scalp.triangles].any(axis=1)
-    used, rows = np.unique(scalp.triangles[chosen], return_inverse=True)
-    rows, above = rows.reshape(-1, 3), above[used]
-    lifted = points[used] + normals[used] * (lift[used] - 0.4 * (above < 3.0))[:, None]
+    sunk = SUNK_MM * (1 - _ease(above / 8.0))
+    lifted, foot = (points + normals * height[:, None] for height in (lift - sunk, lift))
+    normals = vertex_normals(lifted, rows)
     return HairCap(
         lifted,
-        normals[used],
-        rows[(above[rows] > 0.0).all(axis=1)],
-        rows[(above[rows] > -3.0).all(axis=1)],
-        _comb(lifted, normals[used]),
+        foot,
+        normals,
+        rows[(above[rows] > 1.0).all(axis=1)],
+        rows[(above[rows] > -6.0).all(axis=1)],
+        _comb(foot, normals),
     )
+
+
+def _refined(points: Floats, normals: Floats, rows: Indices) -> tuple[Floats, Floats, Indices]:
+    """Cut every triangle in four and round it off: Boubekeur and Alexa 2008, Phong tessellation."""
+    edges = np.sort(rows[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    unique, number = np.unique(edges, axis=0, return_inverse=True)
+    a, b = unique.T
+    middle = (points[a] + points[b]) / 2
+    for end in (a, b):
+        out = ((middle - points[end]) * normals[end]).sum(axis=1, keepdims=True)
+        middle = middle - 0.375 * out * normals[end]
+    normal = normals[a] + normals[b]
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    ab, bc, ca = (number.reshape(-1, 3) + len(points)).T
+    p, q, r = rows.T
+    fourfold = [(p, ab, ca), (ab, q, bc), (ca, bc, r), (ab, bc, ca)]
+    triangles = np.concatenate([np.stack(corners, axis=1) for corners in fourfold])
+    return np.concatenate([points, middle]), np.concatenate([normals, normal]), triangles
 
 
 def _is_ear(points: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
@@ -103,39 +153,35 @@ def _comb(points: Floats, normals: Floats) -> Floats:
 
 
 def grow_hair(cap: HairCap, rng: np.random.Generator) -> Strands:
-    """Return ribbons over the cap and finer wisps along the hairline."""
-    tree = _Surface(cap)
+    """Return locks over the cap, finer ones along the hairline, and short new hairs before it."""
+    surface = _Surface(cap)
     groups = []
-    for count, at_border, length_mm in ((STRANDS, False, 85.0), (WISPS, True, 40.0)):
-        roots = _scatter_roots(cap, rng, count, only_border=at_border)
-        groups.append(_comb_over(tree, roots, rng, length_mm=length_mm))
-    (mass, depth), (wisps, shallow) = groups
-    width = np.concatenate(
-        [
-            RIBBON_MM * rng.uniform(0.6, 1.3, len(mass)),
-            rng.uniform(0.15, 0.6, len(wisps)),
-        ]
-    )
-    points = np.concatenate([mass, wisps])
-    # Hairs that lie deeper stand in the others' shade.
-    tone = rng.uniform(0.6, 1.6, size=(len(points), 1))
-    tone *= 0.35 + 0.65 * np.concatenate([depth, shallow])[:, None]
-    warm = 1 + np.array([0.12, 0.0, -0.1]) * rng.normal(0, 1, size=(len(points), 1))
-    return Strands(points, width, np.array(COLOUR) * tone * np.clip(warm, 0.6, 1.4))
+    for layer in LAYERS:
+        roots = _scatter_roots(cap, rng, layer)
+        points, high = _comb_over(surface, roots, rng, layer=layer)
+        width = rng.uniform(*layer.width_mm, layer.count)
+        # Hairs that lie deeper stand in the others' shade.
+        tone = rng.uniform(0.6, 1.6, layer.count) * (0.35 + 0.65 * high)
+        warm = 1 + np.array([0.12, 0.0, -0.1]) * rng.normal(0, 1, size=(layer.count, 1))
+        colour = np.array(COLOUR) * tone[:, None] * np.clip(warm, 0.6, 1.4)
+        # They are drawn in this order: what lies on top comes last.
+        order = np.argsort(high, kind="stable")
+        groups.append(Strands(points[order], width[order], colour[order]))
+    return joined(groups)
 
 
-def _scatter_roots(
-    cap: HairCap, rng: np.random.Generator, count: int, *, only_border: bool
-) -> Floats:
-    """Return roots (count, 3) spread evenly over the cap, or along its lower border."""
-    corners = cap.points_mm[cap.growth]
+def _scatter_roots(cap: HairCap, rng: np.random.Generator, layer: Layer) -> Floats:
+    """Return roots (count, 3) of a layer: everywhere a few, most along the hairline."""
+    corners = cap.foot_mm[cap.growth]
     areas = np.linalg.norm(
         np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
     )
-    if only_border:
-        areas = areas * (inside_hairline(corners.mean(axis=1)) < 8.0)
-    chosen = rng.choice(len(areas), size=count, p=areas / areas.sum())
-    u, v = rng.uniform(0, 1, (2, count))
+    above = inside_hairline(corners.mean(axis=1))
+    inner = 0.16 if layer.border_mm > 10.0 else 0.0
+    dense = (inner + np.exp(-np.maximum(above, 0.0) / layer.border_mm)) * (above > -layer.below_mm)
+    share = areas * dense
+    chosen = rng.choice(len(areas), size=layer.count, p=share / share.sum())
+    u, v = rng.uniform(0, 1, (2, layer.count))
     u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
     a, b, c = (corners[chosen, k] for k in range(3))
     return np.asarray(a + u[:, None] * (b - a) + v[:, None] * (c - a))
@@ -146,36 +192,38 @@ class _Surface:
 
     def __init__(self, cap: HairCap) -> None:
         self._cap = cap
-        self._tree = cKDTree(cap.points_mm)
+        self._tree = cKDTree(cap.foot_mm)
 
     def at(self, points: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return foot points, normals and comb directions (n, 3), blended from four neighbours."""
-        distance, near = map(np.asarray, self._tree.query(points, k=4))
-        weight = 1 / (distance + 0.5)
+        """Return foot points, normals and comb directions (n, 3), smooth over some 5 mm."""
+        distance, near = map(np.asarray, self._tree.query(points, k=12))
+        weight = np.exp(-((distance / 4.5) ** 2)) + 1e-6
         weight /= weight.sum(axis=1, keepdims=True)
         normal = (self._cap.normals[near] * weight[..., None]).sum(axis=1)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-        offset = ((self._cap.points_mm[near] - points[:, None]) * normal[:, None]).sum(axis=2)
+        offset = ((self._cap.foot_mm[near] - points[:, None]) * normal[:, None]).sum(axis=2)
         foot = points + normal * (offset * weight).sum(axis=1, keepdims=True)
         return foot, normal, (self._cap.comb[near] * weight[..., None]).sum(axis=1)
 
 
 def _comb_over(
-    surface: _Surface, roots: Floats, rng: np.random.Generator, *, length_mm: float
+    surface: _Surface, roots: Floats, rng: np.random.Generator, *, layer: Layer
 ) -> tuple[Floats, Floats]:
     """Follow the comb over the cap: hairs (n, POINTS, 3) and how high each lies, 0 to 1."""
-    count = len(roots)
-    length = length_mm * rng.uniform(0.6, 1.25, count)
-    high = rng.uniform(0, 1, count)
-    lift = 0.7 + 1.0 * high
-    sway = rng.normal(0, 0.10, count)
+    length = layer.length_mm * rng.uniform(0.6, 1.25, layer.count)
+    high = rng.uniform(0, 1, layer.count)
+    lift = 1.2 + layer.lift_mm * high
+    sway = rng.normal(0, 0.06, layer.count)
+    stray = rng.normal(0, layer.stray, layer.count)
     place, points = roots.copy(), []
     for number in range(POINTS):
         foot, normal, comb = surface.at(place)
         s = number / (POINTS - 1)
-        height = lift * np.sin(np.pi * np.clip(0.08 + 0.9 * s, 0, 1)) - 0.5 * (number == 0)
-        points.append(foot + normal * height[:, None])
+        height = lift * min(7.0 * s, 1.0) - 0.3 * (number == 0)
+        points.append(foot + normal * np.reshape(height, (-1, 1)))
         side = np.cross(normal, comb)
-        step = comb + side * (sway * np.sin(5 * s + 9 * sway))[:, None]
-        place = foot + step * (length / (POINTS - 1))[:, None]
-    return np.stack(points, axis=1), high
+        turn = sway * np.sin(5 * s + 9 * sway) + stray * (1 - s)
+        place = foot + (comb + side * turn[:, None]) * (length / (POINTS - 1))[:, None]
+    way = np.stack(points, axis=1)
+    way[:, 1:-1] = (way[:, :-2] + 2 * way[:, 1:-1] + way[:, 2:]) / 4
+    return way, high

@@ -19,7 +19,7 @@ POINTS: Final = 14
 SHADOW_POINTS: Final = 5
 SUNK_MM: Final = 0.3  # roots lie in the skin
 OWN_SKIN: Final = 0.3  # what the lid's skin says against the globe beneath, about a lash's frame
-SHADOW_MM: Final = 0.5  # width of the soft shadow at a root
+SHADOW_MM: Final = 0.8  # width of the soft shadow at a root
 COLOUR: Final = (0.062, 0.037, 0.024)  # dark brown; tips let more light through (fibre.glsl)
 
 
@@ -67,15 +67,15 @@ UPPER: Final = LashRow(
         (0.15, 7.0, -10.0, 0.9),
         (0.4, 9.2, -1.0, 1.1),
         (0.65, 10.0, 8.0, 1.1),
-        (0.85, 9.2, 17.0, 1.0),
-        (1.0, 6.8, 27.0, 0.7),
+        (0.85, 9.0, 15.0, 1.0),
+        (1.0, 6.8, 20.0, 0.7),
     ),
     curl_deg=(-14.0, 14.0, 48.0),
     curl_spread_deg=10.0,
     rows_mm=(-0.3, 0.05, 0.38),
     width_mm=(0.068, 0.100),
-    between_mm=(-12.2, 12.3),
-    shadow=0.26,
+    between_mm=(-12.0, 11.6),
+    shadow=0.13,
 )
 LOWER: Final = LashRow(
     count=75,
@@ -92,7 +92,7 @@ LOWER: Final = LashRow(
     rows_mm=(0.0, 0.35),
     width_mm=(0.044, 0.066),
     between_mm=(-10.0, 11.3),
-    shadow=0.16,
+    shadow=0.10,
 )
 
 

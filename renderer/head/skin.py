@@ -61,7 +61,7 @@ def paint(part: SkinPart) -> tuple[Floats, Floats]:
 def _stubble(albedo: Floats, part: SkinPart) -> None:
     """Darken the scalp and the skin under the brows: roots too fine to be drawn."""
     above = inside_hairline(part.points_mm)
-    scalp = np.clip((above + 2.0) / 8.0, 0, 1)[:, None]
+    scalp = np.clip((above - 1.0) / 12.0, 0, 1)[:, None]
     albedo += 0.9 * scalp * (SCALP * np.array(HAIR_COLOUR) - albedo)
     for eye in (0, 1):
         local = part.points_mm - eye_centre_mm(eye)

@@ -28,7 +28,7 @@ ALPHA_KEEPING_TARGET: Final[Any] = (  # moderngl's stub knows only the pair
 )
 LEAST_PX: Final = 0.25  # hairs that would cover less of a pixel are thinned out
 LEAST_LOCK_PX: Final = 1.0
-LOCK: Final = 6  # hairs of the scalp that one ribbon stands for
+LOCK: Final = 8  # hairs of the scalp that one ribbon stands for
 
 
 @contextmanager
@@ -69,6 +69,7 @@ class StrandMesh:
         rows, triangles = ribbons(strands, rng)
         triangles, self._cells = sort_into_cells(rows[:, :3], triangles)
         self._hides = around_mm is not None
+        self._middle_mm = around_mm or (0.0, 0.0, 0.0)
         if around_mm is not None:
             outward = self._cells.centre_mm - np.asarray(around_mm)
             outward /= np.linalg.norm(outward, axis=1, keepdims=True)
@@ -98,6 +99,7 @@ class StrandMesh:
         camera = camera_mm if self._hides else None
         program.set(
             u_strands=LOCK if self._hides else 1,
+            u_middle_mm=self._middle_mm,
             u_least_px=LEAST_LOCK_PX if self._hides else LEAST_PX,
         )
         for first, count in self._cells.visible(np.asarray(clip, dtype=float), camera):

@@ -16,6 +16,21 @@ float covered(float at, float half_px) {
     return max(min(half_px, at + 0.5) - max(-half_px, at - 0.5), 0.0);
 }
 
+// A lock's hairs lie side by side, of different tone; each begins and ends at its own place.
+vec2 lock(float at, float half_px, float along, float number) {
+    float strands = float(u_strands);
+    float across = (0.5 + 0.5 * at / half_px) * strands + 0.4 * sin(5.0 * along + 40.0 * number);
+    float hair = floor(across);
+    float hair_px = 2.0 * half_px / strands, seen = clamp(hair_px - 0.6, 0.0, 1.0);
+    float tone = mix(0.5, fract(hair * 0.6180340 + number * 17.0), seen);
+    float end = mix(0.5, fract(hair * 0.7548777 + number * 31.0), seen);
+    float fade = smoothstep(0.0, 0.12, along - 0.15 * fract(7.0 * tone));
+    fade *= 1.0 - smoothstep(0.25 + 0.4 * end, 0.55 + 0.45 * end, along);
+    float thin = 0.48 * fade;
+    float one = min(covered((across - hair - 0.5) * hair_px, thin * hair_px), 1.0);
+    return vec2(mix(2.0 * thin, one, seen), tone);
+}
+
 void main() {
     float at = v_ribbon.x, half_px = v_ribbon.y;
     float alpha = covered(at, half_px) * min(v_ribbon.z * 30.0, 1.0);  // it leaves the skin softly
@@ -24,6 +39,11 @@ void main() {
     // A cylinder: the glints run along its middle, thinner sides let light through.
     float middle = 1.0 - x * x;
     vec3 radiance = v_body * mix(1.0, 1.25 - 0.375 * middle, round_px) + v_glint * mix(1.0, 1.5 * middle, round_px);
+    if (u_strands > 1) {
+        vec2 hair = lock(at, max(half_px, 1e-3), v_ribbon.z, v_ribbon.w);
+        alpha *= hair.x;
+        radiance *= 0.55 + 0.9 * hair.y;
+    }
     if (v_shadow > 0.0) {
         float fade = v_ribbon.z * (1.0 - v_ribbon.z) * (1.0 - v_ribbon.z);
         alpha = 6.75 * v_shadow * middle * middle * fade;

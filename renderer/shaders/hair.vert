@@ -19,6 +19,7 @@ uniform float u_pixel_per_mm;   // at 1 mm distance
 uniform float u_pixel_mm;       // a pixel at the head, the same for all hairs: thinning is steady
 uniform float u_least_px;       // thinner hairs are thinned out
 uniform int u_strands;          // hairs that a ribbon stands for: 1, or more for a lock
+uniform vec3 u_middle_mm;       // of the body that locks lie flat on
 
 out vec3 v_body;
 out vec3 v_glint;
@@ -37,19 +38,25 @@ void main() {
     vec3 to_camera = u_camera_mm - in_position;
     float distance_mm = length(to_camera);
     vec3 v = to_camera / distance_mm;
-    vec3 across = cross(in_tangent, v);
+    // A hair is as wide from every side; a lock lies flat and is thin at the head's outline.
+    vec3 across = cross(in_tangent, u_strands > 1 ? in_position - u_middle_mm : v);
     across /= max(length(across), 1e-4);
+    float shown = max(length(across - v * dot(across, v)), 0.25);
     float pixel_mm = distance_mm / u_pixel_per_mm;
     float kept = min(2.0 * in_ribbon.y / (u_least_px * u_pixel_mm), 1.0);
     float half_px = in_ribbon.y * taper(in_ribbon.z) / (kept * pixel_mm);
 
     v_shadow = in_colour.a;
+    float reach_mm = (half_px + MARGIN_PX / shown) * pixel_mm;
+    half_px *= shown;
+    // A lock seen end-on would be a blot.
+    if (u_strands > 1) half_px *= smoothstep(0.02, 0.2, length(cross(in_tangent, v)));
     v_ribbon = vec4(in_ribbon.x * (half_px + MARGIN_PX), half_px, in_ribbon.z, in_ribbon.w);
     FibreLight light = fibre_light(in_tangent, v, in_colour.rgb, in_ribbon.z, in_sun);
     v_body = light.body;
     v_glint = light.glint;
 
-    vec3 p_world = in_position + across * (in_ribbon.x * (half_px + MARGIN_PX) * pixel_mm);
+    vec3 p_world = in_position + across * (in_ribbon.x * reach_mm);
     p_world += v * (in_colour.a > 0.0 ? SHADOW_LIFT_MM : 0.0);
     bool is_drawn = in_ribbon.w <= kept;
     gl_Position = is_drawn ? u_projection * u_view_matrix * vec4(p_world, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
