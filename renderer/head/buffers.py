@@ -14,7 +14,7 @@ from renderer.body.makehuman import Floats, Indices
 from renderer.camera import Matrix
 from renderer.program import Program
 
-CELL_MM: Final = 20.0
+CELL_MM: Final = 12.0
 STATIC: Final = ("3f 3f 3f 4f 1f", ["in_position", "in_normal", "in_albedo", "in_detail", "in_lid"])
 LIT: Final = ("3f 4f", ["in_diffuse", "in_surface"])
 

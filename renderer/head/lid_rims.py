@@ -30,7 +30,7 @@ MEDIAL_MM: Final = (-16.6, -2.1)  # ... and beside the nose
 LATERAL_Z_MM: Final = 4.4
 MEDIAL_Z_MM: Final = 6.4
 CLEARANCE_MM: Final = 0.06  # tear film between rim and globe
-LEAVING_MM: Final = 2.2  # how softly the rims leave the globe for the canthi
+LEAVING_MM: Final = 1.5  # how softly the rims leave the globe for the canthi
 OVERLAP_MM: Final = 0.15  # of shut lids, so that nothing shines between them
 # Cubic Bezier arcs of the open rims, joined at the extremum: the extremum, and the handles towards
 # the nose and the temple, which set the fullness. Upright handles make the inner canthus round.

@@ -13,13 +13,14 @@ from renderer.head.buffers import CellMesh
 from renderer.head.character import figure
 from renderer.head.clothing import COLOUR as WOOL_COLOUR
 from renderer.head.clothing import sweater
-from renderer.head.face_mesh import FaceMesh, SkinPart, face_mesh
+from renderer.head.face_mesh import FaceMesh, SkinPart, face_mesh, triangles_of
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import hair_cap
 from renderer.head.lid_fit import ALONG, AROUND, grid_quads
 from renderer.head.lid_relief import lid_coordinates
 from renderer.head.skin import SCALP, detail_coordinates, paint
 
+SPARSE_ROW: Final = 29  # of the lid patches: from here on, every other column will do
 AROUND_COLUMN: Final = 11  # of the rows: the way around the fissure in the lids' map
 
 
@@ -68,7 +69,12 @@ def skin_surfaces(gl: moderngl.Context, face: FaceMesh) -> dict[str, Surface]:
             part.triangles,
             gloss,
             part.wet,
-            CellMesh(gl, rows, solid, turn=None if lid is None else AROUND_COLUMN),
+            CellMesh(
+                gl,
+                rows,
+                solid if lid is None else _near_patch(lid),
+                turn=None if lid is None else AROUND_COLUMN,
+            ),
             None if lid is None else CellMesh(gl, rows, _thinned_patch(lid), turn=AROUND_COLUMN),
             None if sheer is None else CellMesh(gl, rows, sheer),
         )
@@ -119,10 +125,25 @@ def _by_cover(part: SkinPart) -> tuple[Indices, Indices]:
     return part.triangles[solid], part.triangles[~solid & (cover.max(axis=1) > 0.001)]
 
 
+def _near_patch(eye: int) -> Indices:
+    """Return a patch's triangles for close views: full near the rims, half the columns beyond."""
+    inner = grid_quads(AROUND, SPARSE_ROW + 1)
+    column, row = inner // (SPARSE_ROW + 1), inner % (SPARSE_ROW + 1)
+    triangles = [triangles_of(column * ALONG + row)]
+    outer = grid_quads(AROUND // 2, ALONG - SPARSE_ROW)
+    column, row = outer // (ALONG - SPARSE_ROW), outer % (ALONG - SPARSE_ROW)
+    triangles.append(triangles_of(2 * column * ALONG + row + SPARSE_ROW))
+    # Where two columns become one, the first sparse row leans over the middle column.
+    first, second, third = ((np.arange(0, AROUND, 2) + k) % AROUND * ALONG for k in range(3))
+    triangles.append(np.column_stack([first, third, second]) + SPARSE_ROW)
+    both = np.concatenate(triangles)
+    return np.asarray(both[:, ::-1] if eye == 0 else both)
+
+
 def _thinned_patch(eye: int) -> Indices:
     """Return triangles that skip three of four rings' points: for views from further away."""
     around, along = np.arange(0, AROUND, 4), np.append(np.arange(0, ALONG - 1, 3), ALONG - 1)
     quads = grid_quads(len(around), len(along))
     number = (around[:, None] * ALONG + along[None, :]).ravel()
-    triangles = number[quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)]
+    triangles = number[triangles_of(quads)]
     return np.asarray(triangles[:, ::-1] if eye == 0 else triangles)

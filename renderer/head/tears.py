@@ -33,13 +33,14 @@ ACROSS: Final = 8
 
 @dataclass(frozen=True)
 class TearStrip:
-    """Points (n, 3) in mm and unit normals, triangles (m, 3), and per point ``across`` from 0 on
+    """Points (n, 3) in mm, unit normals and tangents along the lid, triangles (m, 3), and per point
 
-    the globe to 1 on the lid, and ``amount`` of water, 0 to 1.
+    ``across`` from 0 on the globe to 1 on the lid, and ``amount`` of water, 0 to 1.
     """
 
     points_mm: Floats
     normals: Floats
+    tangents: Floats
     triangles: Indices
     across: Floats
     amount: Floats
@@ -68,6 +69,7 @@ def tear_strip(lid: LidPatch, *, is_upper: bool) -> TearStrip:
     return TearStrip(
         points + LIFT_MM * normals,
         normals,
+        np.repeat(_unit(np.gradient(corner, axis=0)), ACROSS, axis=0),
         triangles,
         np.tile(t[0, :, 0], ALONG),
         np.repeat(amount, ACROSS),
@@ -77,9 +79,8 @@ def tear_strip(lid: LidPatch, *, is_upper: bool) -> TearStrip:
 def _on_eye(corner: Floats, height_mm: float, pose: LidPose) -> Floats:
     """Return where the water ends on the globe, ``height_mm`` up from the rim."""
     along = np.gradient(corner, axis=0)
-    radial = corner / np.linalg.norm(corner, axis=1, keepdims=True)
-    up = np.cross(radial, along)
-    up /= np.linalg.norm(up, axis=1, keepdims=True)
+    radial = _unit(corner)
+    up = _unit(np.cross(radial, along))
     xy = (corner + height_mm * up)[:, :2]
     return np.column_stack([xy, on_globe(xy, pose)])
 
@@ -98,6 +99,10 @@ def _on_margin(lid: LidPatch, corner: Floats, depth_mm: float, *, is_upper: bool
     order = np.argsort(foot[:, 0], kind="stable")
     shift = np.array([np.interp(corner[:, 0], foot[order, 0], foot[order, k]) for k in (1, 2)])
     return np.column_stack([corner[:, 0], *shift])
+
+
+def _unit(vectors: Floats) -> Floats:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
 
 
 def _triangles(*, turned: bool) -> Indices:
@@ -123,6 +128,7 @@ class TearLine:
                     [
                         to_world(strip.points_mm, eye),
                         strip.normals * side,
+                        strip.tangents * side,
                         strip.across,
                         strip.amount,
                     ]
@@ -133,7 +139,7 @@ class TearLine:
         index = gl.buffer(np.concatenate(triangles).astype(np.int32).tobytes())
         self._array = gl.vertex_array(
             program.gl_program,
-            [(content, "3f 3f 2f", "in_position", "in_normal", "in_water")],
+            [(content, "3f 3f 3f 2f", "in_position", "in_normal", "in_tangent", "in_water")],
             index,
         )
 

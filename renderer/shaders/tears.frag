@@ -6,6 +6,7 @@
 
 in vec3 v_world;
 in vec3 v_normal;
+in vec3 v_tangent;
 in vec2 v_water;
 
 uniform vec3 u_camera_mm;
@@ -15,34 +16,46 @@ out vec4 out_radiance;
 
 const float TEAR_F0 = 0.021;
 const float RADIUS_MM = 0.28;        // of the hollow: the normal turns by a radian over this way
-const float RIPPLE = 0.11;           // slopes of the water, root mean square: lashes and mucus
-const float EDGE_SHADE = 0.30;       // what the upper edge takes away
 const float HEIGHT_MM = 0.35;        // of the strip, from globe to lid
+const float EDGE_SHADE = 0.16;       // what the upper edge takes away
+// Slopes of the water, root mean square. Across, the hollow is smooth; along the lid lashes, oil
+// and mucus ripple it, which draws the sun's image out into a line: a sharp and a wide part.
+const float ACROSS = 0.05;
+const vec2 ALONG = vec2(0.10, 0.42);
+const vec2 SHARE = vec2(0.45, 0.55);
+// The harmonics keep a ninth of a real sky's contrast: bright clouds and the sun's halo count more.
+const float SKY_CONTRAST = 1.8;
 
-// Share of the strip's width that a line of the water's own width keeps once pixels are wider.
-float coverage() { return min(HEIGHT_MM / u_mm_per_px, 1.0); }
+// Beckmann's distribution with two slopes (Ward 1992), for small angles.
+float lobe(vec3 n, vec3 h, vec2 slopes) {
+    vec3 t = normalize(v_tangent - n * dot(n, v_tangent));
+    vec2 x = vec2(dot(h, t), dot(h, cross(n, t))) / slopes;
+    return exp(-0.5 * dot(x, x)) / (2.0 * PI * slopes.x * slopes.y);
+}
 
 vec3 sun_mirrored(vec3 n, vec3 v) {
     vec3 h = normalize(v + u_sun_direction);
-    float turn = 0.5 * u_mm_per_px / RADIUS_MM;
-    float roughness = sqrt(sqrt(2.0) * length(vec2(RIPPLE, min(turn, 0.6))));
+    float across = length(vec2(ACROSS, min(0.4 * u_mm_per_px / RADIUS_MM, 0.5)));
+    float d = SHARE.x * lobe(n, h, vec2(ALONG.x, across)) + SHARE.y * lobe(n, h, vec2(ALONG.y, across));
     float l_dot_h = max(dot(u_sun_direction, h), 0.1);
-    float lobe = gaussian_lobe(dot(n, h), roughness) / (4.0 * l_dot_h * l_dot_h);
-    float lit = max(dot(n, u_sun_direction), 0.0) * sun_visibility(v_world, 0.6);
-    return u_sun_irradiance * (schlick(l_dot_h, TEAR_F0) * lobe * lit);
+    float lit = max(dot(n, u_sun_direction), 0.0) * sun_visibility(v_world, 1.5);
+    return u_sun_irradiance * (schlick(l_dot_h, TEAR_F0) * d * lit / (4.0 * l_dot_h * l_dot_h));
+}
+
+vec3 sky_mirrored(vec3 n, vec3 v, float fresnel) {
+    vec3 r = reflect(-v, n);
+    // Below the horizon lashes, cheek and ground are darker; behind stands the head.
+    float open_share = smoothstep(-0.35, 0.35, r.y) * smoothstep(-0.3, 0.2, r.z);
+    return fresnel * mix(0.25, SKY_CONTRAST, open_share) * ambient_irradiance(r) / PI;
 }
 
 void main() {
     vec3 v = normalize(u_camera_mm - v_world);
     vec3 n = normalize(v_normal);
-    float n_dot_v = clamp(dot(n, v), 0.05, 1.0);
-    float fresnel = schlick(n_dot_v, TEAR_F0);
-    vec3 r = reflect(-v, n);
-    // The sky stands over the horizon; below it lashes, cheek and ground are darker.
-    float open_share = smoothstep(-0.35, 0.35, r.y) * smoothstep(-0.2, 0.3, r.z);
-    vec3 mirrored = fresnel * mix(0.25, 1.0, open_share) * ambient_irradiance(r) / PI;
+    float fresnel = schlick(clamp(dot(n, v), 0.05, 1.0), TEAR_F0);
     float edge = 1.0 - smoothstep(0.0, 0.35, v_water.x);
-    float amount = v_water.y * coverage();
     float taken = fresnel + EDGE_SHADE * edge * (1.0 - edge) * 4.0;
-    out_radiance = amount * vec4(mirrored + sun_mirrored(n, v), taken);
+    // A line narrower than a pixel fills but a part of it.
+    float amount = v_water.y * min(HEIGHT_MM / u_mm_per_px, 1.0);
+    out_radiance = amount * vec4(sky_mirrored(n, v, fresnel) + sun_mirrored(n, v), taken);
 }
