@@ -22,7 +22,8 @@ ROWS: Final = 512  # from the pupil to the edge of the map
 INNER_MM: Final = 1.7
 OUTER_MM: Final = 6.0
 TURN_STEPS: Final = 36  # tried turns, each plain and mirrored
-FEATHER_MM: Final = 0.12
+RIM_ROWS: Final = 6  # the last 0.05 mm before the veil: not quite clear
+FEATHER_MM: Final = 0.3
 MODE: Final[tuple[Literal["nearest"], Literal["wrap"]]] = ("nearest", "wrap")
 LEVEL_MM: Final = 0.6  # over which brightness is led from the seen to the filled
 
@@ -35,7 +36,8 @@ def fill_hidden(colour: Field, known: Mask, *, radius_mm: Field, angle: Field) -
     polar = np.stack(
         [ndimage.map_coordinates(logs[..., c], [rows, columns], order=1) for c in range(3)], axis=-1
     )
-    shown, polar = _with_rim(shown, polar)
+    shown, polar, last_mm = _with_rim(shown, polar)
+    known = known & (radius_mm < last_mm)
     filled = _filled(polar, shown)
     at = [
         (radius_mm - INNER_MM) / (OUTER_MM - INNER_MM) * ROWS - 0.5,
@@ -62,22 +64,21 @@ def _polar_grid(size_px: int) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.f
     return y, x
 
 
-def _with_rim(shown: Mask, polar: Field) -> tuple[Mask, Field]:
-    """Continue the outermost rows that the limbus veils everywhere: mirrored inwards, darker.
+def _with_rim(shown: Mask, polar: Field) -> tuple[Mask, Field, float]:
+    """Continue the outermost rows that the limbus veils nearly everywhere: mirrored, darker.
 
-    Behind the limbus the iris darkens to its root, in every eye.
+    Behind the limbus the iris darkens to its root, in every eye. Also return where that begins.
     """
-    seen_rows = shown.mean(axis=1) > 0.15
-    last = int(np.max(np.nonzero(seen_rows)[0], initial=1))
-    if last >= ROWS - 1:
-        return shown, polar
+    outwards = shown.sum(axis=1) / max(1, int(shown.sum(axis=1).max()))
+    last = int(np.max(np.nonzero(outwards > 0.6)[0], initial=1)) - RIM_ROWS
+    last_mm = INNER_MM + (last + 1) / ROWS * (OUTER_MM - INNER_MM)
     rows = np.arange(last + 1, ROWS)
     mirror = np.maximum(2 * last - rows, 0)
     darker = -1.6 * np.minimum((rows - last) / ROWS * (OUTER_MM - INNER_MM) / 0.5, 1.0)
     shown, polar = shown.copy(), polar.copy()
     shown[rows] = shown[mirror]
     polar[rows] = polar[mirror] + darker[:, None, None].astype(np.float32)
-    return shown, polar
+    return shown, polar, last_mm
 
 
 def _filled(polar: Field, shown: Mask) -> Field:

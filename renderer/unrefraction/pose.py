@@ -32,6 +32,7 @@ CONTOUR: Final = 72
 TILT_DEG: Final = 12.0  # people look into a camera that is asked to photograph their eye
 DECENTRE_MM: Final = 0.15
 HEIGHT_RATIO: Final = 0.015
+PUPIL_OVAL: Final = 0.012  # of the radius, along and across: no pupil is quite round
 ROLL_DEG: Final = 12.0  # about the coarse search's, which goes in steps of 45
 SNAP_DEG: Final = 10.0  # rolls below this are taken for none
 PUPIL_NOISE_MM: Final = 0.025  # of single edge points: the ruff's scallops
@@ -46,7 +47,8 @@ class Pose:
     ``pitch`` the gaze to the right and up from the line of sight and ``roll`` the eye's turn
     anticlockwise, all in radians; ``distance_mm`` from the camera to the limbus's centre.
     ``pupil_mm`` is the pupil's radius on the iris plane, ``pupil_x_mm``, ``pupil_y_mm`` its centre
-    there and ``height_ratio`` the limbus's height over its width.
+    there, ``oval`` how much it is longer along x and along y = x than across, in shares of its
+    radius, and ``height_ratio`` the limbus's height over its width.
     """
 
     x: float
@@ -60,6 +62,7 @@ class Pose:
     pupil_x_mm: float
     pupil_y_mm: float
     height_ratio: float
+    oval: tuple[float, float] = (0.0, 0.0)
 
     @property
     def tilt_deg(self) -> float:
@@ -111,7 +114,8 @@ class Pose:
 
     def pupil(self) -> Array:
         """Return the pupil's edge in the picture as the cornea shows it, (CONTOUR, 2)."""
-        circle = (self.pupil_mm + RUFF_MM) * _CIRCLE + [self.pupil_x_mm, self.pupil_y_mm]
+        longer = 1.0 + self.oval[0] * _TWICE[:, :1] + self.oval[1] * _TWICE[:, 1:]
+        circle = (self.pupil_mm + RUFF_MM) * longer * _CIRCLE + [self.pupil_x_mm, self.pupil_y_mm]
         return self.project(self.entry(circle))
 
     def _turn(self) -> Array:
@@ -129,6 +133,9 @@ class Pose:
         return np.asarray(turn @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]))
 
 
+_TWICE: Final = np.stack(
+    [f(np.arange(CONTOUR) / CONTOUR * 4 * np.pi) for f in (np.cos, np.sin)], axis=-1
+)
 _LIMBUS: Final = np.array([0.0, 0.0, LIMBUS_Z_MM])
 _CIRCLE: Final = np.stack(
     [f(np.arange(CONTOUR) / CONTOUR * 2 * np.pi) for f in (np.cos, np.sin)], axis=-1
@@ -170,14 +177,27 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
             0.0,
             LIMBUS_HEIGHT_RATIO,
             roll,
+            0.0,
+            0.0,
         ]
     )
     model_distance = distance_mm * MODEL_LIMBUS_MM / limbus_mm
 
     def pose(values: Array) -> Pose:
-        x, y, scale, yaw, pitch, radius, px, py, ratio, turned = (float(v) for v in values)
+        x, y, scale, yaw, pitch, radius, px, py, ratio, turned, *oval = (float(v) for v in values)
         return Pose(
-            x, y, math.exp(scale), yaw, pitch, turned, model_distance, radius, px, py, ratio
+            x,
+            y,
+            math.exp(scale),
+            yaw,
+            pitch,
+            turned,
+            model_distance,
+            radius,
+            px,
+            py,
+            ratio,
+            (oval[0], oval[1]),
         )
 
     def residuals(values: Array) -> Array:
@@ -198,11 +218,13 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
                 trial.pupil_y_mm / DECENTRE_MM,
                 (trial.height_ratio - LIMBUS_HEIGHT_RATIO) / HEIGHT_RATIO,
                 (trial.roll - roll) / spread,
+                trial.oval[0] / PUPIL_OVAL,
+                trial.oval[1] / PUPIL_OVAL,
             ]
         )
         return np.concatenate([*parts, prior])
 
-    x_scale = np.array([1.0, 1.0, 0.01, 0.1, 0.1, 0.05, 0.1, 0.1, 0.01, 0.1])
+    x_scale = np.array([1.0, 1.0, 0.01, 0.1, 0.1, 0.05, 0.1, 0.1, 0.01, 0.1, 0.01, 0.01])
 
     def best(first: list[Array]) -> Array:
         fits = [
@@ -221,7 +243,7 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
 
 
 def _signs(yaw: float, pitch: float) -> Array:
-    return np.array([1.0, 1.0, 1.0, yaw, pitch, 1.0, 1.0, 1.0, 1.0, 1.0])
+    return np.array([1.0, 1.0, 1.0, yaw, pitch, *[1.0] * 7])
 
 
 def _roll(turn: float) -> float:

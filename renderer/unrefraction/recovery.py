@@ -20,6 +20,7 @@ from renderer.unrefraction import visible
 from renderer.unrefraction.edges import Edges, find_edges
 from renderer.unrefraction.fill import fill_hidden
 from renderer.unrefraction.light import (
+    Limbus,
     even_light,
     find_limbus,
     lift_veils,
@@ -51,6 +52,7 @@ LEAST_SEEN: Final = 0.45
 LEAST_PUPIL_RAYS: Final = 0.5
 LEAST_LIMBUS_RAYS: Final = 0.28  # two quarters of 50 degrees: lids cover the rest
 LEAST_DETAIL: Final = 0.02
+UNVEILED_MM: Final = 5.0  # from the axis, on the maps: no limbus veils this from any side
 CLIPPED: Final = 0.97
 MOST_CLIPPED: Final = 0.12
 LEAST_WHITE: Final = 0.03
@@ -121,8 +123,7 @@ def recover_iris(
     colour = _sampled(crop.pixels, texels)
     tell("telling iris from lids and glints")
     limbus, white = find_limbus(colour, texels)
-    clear = limbus.clear(texels.surface_mm)
-    seen, clipped = _seen(colour, crop, texels, clear, pose)
+    seen, clipped = _seen(colour, crop, texels, limbus, pose)
     _check_light(photograph, seen, texels, clipped, white)
     tell("taking the light off")
     bare = lift_veils(colour, texels, limbus=limbus, white=white)
@@ -267,16 +268,14 @@ def _sampled(pixels: Field, texels: Texels) -> Field:
 
 
 def _seen(
-    colour: Field, crop: Crop, texels: Texels, clear: Field, pose: Pose
+    colour: Field, crop: Crop, texels: Texels, limbus: Limbus, pose: Pose
 ) -> tuple[Mask, float]:
     """Return which texels show the iris's own tissue, and the share of it that is burnt out."""
     n = colour.shape[0]
     step = n // visible.GRID_PX
     coarse = colour.reshape(visible.GRID_PX, step, visible.GRID_PX, step, 3).mean(axis=(1, 3))
     sparse = place_texels(pose, visible.GRID_PX)
-    veiled = sparse.radius_mm[sparse.surface_mm > 5.25]
-    outer = min(float(veiled.min()) if veiled.size else IRIS_RADIUS_MM, 5.3)
-    lids = visible.find_lids(coarse, sparse, outer_mm=outer)
+    lids = visible.find_lids(coarse, sparse, clear=limbus.clear(sparse.surface_mm))
     height, width = crop.pixels.shape[:2]
     inside = (
         (texels.x_px > 1)
@@ -287,8 +286,12 @@ def _seen(
     glints = visible.find_glints(crop.pixels, px_per_mm=pose.px_per_mm)
     row = np.clip(np.rint(texels.y_px), 0, height - 1).astype(np.intp)
     column = np.clip(np.rint(texels.x_px), 0, width - 1).astype(np.intp)
-    open_part = inside & visible.between_lids(lids, n) & (clear > visible.LIMBUS_CLEAR)
-    tissue = (texels.radius_mm > PUPIL_RADIUS_MM + 0.15) & (texels.radius_mm < 5.2)
+    open_part = (
+        inside
+        & visible.between_lids(lids, n)
+        & (limbus.clear(texels.surface_mm) > visible.LIMBUS_CLEAR)
+    )
+    tissue = (texels.radius_mm > PUPIL_RADIUS_MM + 0.15) & (texels.radius_mm < UNVEILED_MM)
     burnt = colour.min(axis=-1) > CLIPPED
     clipped = float(burnt[tissue & open_part].mean()) if (tissue & open_part).any() else 1.0
     hair = visible.find_lashes(colour, 12.0 / n) & (texels.radius_mm > PUPIL_RADIUS_MM + 0.4)
@@ -298,7 +301,7 @@ def _seen(
 def _check_light(
     photograph: Photograph, seen: Mask, texels: Texels, clipped: float, white: Field
 ) -> None:
-    tissue = (texels.radius_mm > PUPIL_RADIUS_MM) & (texels.radius_mm < 5.2)
+    tissue = (texels.radius_mm > PUPIL_RADIUS_MM) & (texels.radius_mm < UNVEILED_MM)
     share = float(seen[tissue].mean())
     if clipped > MOST_CLIPPED or float(white.min()) > 0.995:
         raise PhotographError(
@@ -370,7 +373,7 @@ def _assembled(
         "anisotropy": layers.anisotropy,
     }
     ring = (r > PUPIL_RADIUS_MM) & (r < IRIS_RADIUS_MM)
-    share = float(seen[ring].mean())
+    share = float(seen[ring & (r < UNVEILED_MM)].mean())
     found = _found(photograph, pose, crop, edges, share) | numbers
     found["mean_albedo"] = [round(float(v), 4) for v in mean]
     return Recovery(arrays, albedo, relief, cavity, seen & ring, pose, crop, found)

@@ -20,7 +20,7 @@ RADII_PX: Final = 11.0 * 1.09 ** np.arange(33)  # 11 to 175: an iris of 7 % to 1
 ANGLES: Final = 32
 PUPIL_SHARES: Final = np.array([0.2, 0.26, 0.33, 0.42, 0.53, 0.66])  # of the iris's radius
 TURNS: Final = (0, 4, 8, 12)  # of the eye's long axis, in steps of 11.25 degrees
-UPRIGHT_BONUS: Final = 1.3  # photographs are mostly upright
+UPRIGHT_BONUS: Final = 2.0  # photographs are mostly upright
 MIDDLE_BONUS: Final = 0.15  # and their subject is mostly in the middle
 
 

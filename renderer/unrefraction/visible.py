@@ -21,31 +21,37 @@ Mask = npt.NDArray[np.bool_]
 
 GRID_PX: Final = 256  # of the map on which lids are searched: 0.047 mm
 SIDE_DEG: Final = 38.0  # lids are never nearer than this to the line between their corners
-LID_MARGIN_MM: Final = 0.22  # wet edge and shadow of a lid's rim
+LID_MARGIN_MM: Final = 0.3  # wet edge and shadow of a lid's rim
 RINGS: Final = 24
+BLACK: Final = 1.4  # in the logarithm: darker against its ring than any shade of a lid
 GLINT_MARGIN_MM: Final = 0.08
-LIMBUS_CLEAR: Final = 0.65  # where less light than this comes from the iris, it is not used
+LIMBUS_CLEAR: Final = 0.8  # where less light than this comes from the iris, it is not used
 
 
 @dataclass(frozen=True)
 class Lids:
-    """Upper and lower lid over the map's columns: y in mm, one value per grid column."""
+    """Upper and lower lid over the map's columns: y in mm, one value per grid column.
+
+    ``alien`` (GRID_PX, GRID_PX) marks single texels that look unlike any iris.
+    """
 
     x_mm: Field
     upper_mm: Field
     lower_mm: Field
+    alien: Mask
 
 
-def find_lids(colour: Field, texels: Texels, *, outer_mm: float) -> Lids:
+def find_lids(colour: Field, texels: Texels, *, clear: Field) -> Lids:
     """Return where lids end, from the map's linear colours (n, n, 3) at n = GRID_PX.
 
-    ``outer_mm`` is where the limbus begins to veil the iris. Lids that hide nothing lie outside.
+    ``clear`` is the share of light that the limbus lets through. Lids that hide nothing lie
+    outside.
     """
-    alien = _strangeness(colour, texels, outer_mm)
+    inside = (clear > LIMBUS_CLEAR) & (texels.radius_mm > 2.1)
+    alien = _strangeness(colour, texels, inside)
     line = texels_line(GRID_PX)
-    upper = _lid(alien, texels.radius_mm < outer_mm)
-    lower = _lid(alien[::-1], (texels.radius_mm < outer_mm)[::-1])
-    return Lids(line, upper, -lower)
+    upper, lower = _lid(alien, inside), _lid(alien[::-1], inside[::-1])
+    return Lids(line, upper, -lower, ndimage.binary_dilation(alien > 2.0, iterations=2))
 
 
 def texels_line(size_px: int) -> Field:
@@ -53,7 +59,7 @@ def texels_line(size_px: int) -> Field:
     return (((np.arange(size_px) + 0.5) / size_px * 2 - 1) * 6.0).astype(np.float32)
 
 
-def _strangeness(colour: Field, texels: Texels, outer_mm: float) -> Field:
+def _strangeness(colour: Field, texels: Texels, inside: Mask) -> Field:
     """Return evidence per texel against iris (> 0) or for it (< 0), around -1 to 4."""
     smooth = ndimage.gaussian_filter(np.log(np.maximum(colour, 1e-3)), (2.5, 2.5, 0))
     features = np.stack(
@@ -62,20 +68,22 @@ def _strangeness(colour: Field, texels: Texels, outer_mm: float) -> Field:
     )
     angle = np.degrees(texels.angle)
     sides = np.minimum(np.abs(angle), 180 - np.abs(angle)) < SIDE_DEG
-    ring = np.clip((texels.radius_mm - 2.0) / (outer_mm - 2.0) * RINGS, 0, RINGS).astype(int)
+    ring = np.clip((texels.radius_mm - 2.0) / 3.85 * RINGS, 0, RINGS).astype(int)
     evidence = np.zeros(ring.shape, np.float32)
     for number in range(RINGS):
-        here = ring == number
+        here = inside & (ring == number)
         known = features[here & sides]
+        if len(known) < 8:
+            continue
         middle = np.median(known, axis=0)
         spread = 1.4826 * np.median(np.abs(known - middle), axis=0) + [0.20, 0.06, 0.06]
         far = (features[here] - middle) / spread
         # Lids shade the iris below them: darkness alone is weaker evidence than light or hue.
         light = np.where(far[:, 0] > 0, far[:, 0], -0.4 * far[:, 0])
+        light[features[here][:, 0] < middle[0] - BLACK] = 8.0
         evidence[here] = np.clip(
-            np.maximum(light, np.abs(far[:, 1:]).max(axis=-1)) - 3.5, -1.0, 4.0
+            np.maximum(light, np.abs(far[:, 1:]).max(axis=-1)) - 4.2, -1.0, 4.0
         )
-    evidence[(texels.radius_mm < 2.1) | (texels.radius_mm > outer_mm)] = 0.0
     return evidence
 
 
@@ -111,7 +119,10 @@ def between_lids(lids: Lids, size_px: int) -> Mask:
     line = texels_line(size_px)
     upper = np.interp(line, lids.x_mm, lids.upper_mm) - LID_MARGIN_MM
     lower = np.interp(line, lids.x_mm, lids.lower_mm) + LID_MARGIN_MM
-    return np.asarray((line[:, None] < upper[None, :]) & (line[:, None] > lower[None, :]))
+    step = size_px // GRID_PX
+    alien = np.repeat(np.repeat(lids.alien, step, axis=0), step, axis=1)
+    inside = (line[:, None] < upper[None, :]) & (line[:, None] > lower[None, :])
+    return np.asarray(inside & ~alien)
 
 
 def find_glints(picture: Field, *, px_per_mm: float) -> Mask:
