@@ -200,9 +200,9 @@ def _eye_map(place: _Layout, sources: _Sources, eye: int) -> npt.NDArray[np.uint
     )
 
 
-def _groove(noise: Floats, *, share: float) -> Floats:
+def _groove(noise: Floats, *, share: float, steep: float = 3.2) -> Floats:
     """Turn noise of unit variance into grooves 0 to 1 where it exceeds ``share``."""
-    return np.asarray(1.0 / (1.0 + np.exp(-3.2 * (noise - share))))
+    return np.asarray(1.0 / (1.0 + np.exp(-steep * (noise - share))))
 
 
 def _ease(x: Floats) -> Floats:
@@ -234,7 +234,7 @@ def _height(place: _Layout, sources: _Sources, eye: int) -> Floats:
     height -= lower * lid * 0.045 * furrow * _ease((place.beyond - 2.0) / 3.0)
     feet = _sample(lines, radius / 2.2 + 5.0 + shift, angle * 5.0 + 0.12 * wander)
     rings = _groove(_sample(lines, angle * 12.0 + shift, radius / 0.5), share=0.6)
-    height -= fan * (0.055 * _groove(feet, share=0.75) + 0.008 * rings)
+    height -= fan * (0.060 * _groove(feet, share=0.9, steep=1.9) + 0.008 * rings)
     net = _sample(sources.net, place.flat[0] + shift, place.flat[1])
     height += (0.85 * upper + 0.95 * lower) * net
     grain = _sample(sources.noise, s * 4.0 + shift, w * 4.0)

@@ -30,7 +30,7 @@ Bytes = npt.NDArray[np.uint8]
 
 RELIEF: Final = Tile(TILE_MM, 1024)  # 32 texels a mm: a pixel each when the iris fills 350
 COLOUR: Final = Tile(103.0, 512)  # no multiple of TILE_MM
-PORES: Final = 900  # visible ones, of some 5000 follicles
+PORES: Final = 1150  # visible ones, of some 5000 follicles
 
 
 class SkinMaps:
@@ -88,7 +88,7 @@ def relief_tile(seed: int = 11) -> Bytes:
     return _bytes(
         0.5 + slope_x * (0.5 / SLOPE_RANGE),
         0.5 + slope_y * (0.5 / SLOPE_RANGE),
-        openness(height, RELIEF, reach_mm=0.28, depth_mm=0.075),
+        openness(height, RELIEF, reach_mm=0.28, depth_mm=0.085),
         0.5 + 0.13 * mottle,
     )
 
@@ -104,7 +104,7 @@ def colour_tile(seed: int = 12) -> Bytes:
     def mixed(*shares: tuple[float, float]) -> Field:
         return np.asarray(sum(share * periodic_noise(rng, COLOUR, size) for share, size in shares))
 
-    blood = mixed((0.6, 3.2), (0.6, 1.1), (0.45, 0.45))
+    blood = mixed((0.45, 3.2), (0.6, 1.1), (0.5, 0.45))
     melanin = mixed((0.5, 2.0), (0.4, 0.6), (0.3, 0.3))
     return _bytes(
         0.5 + 0.11 * blood,

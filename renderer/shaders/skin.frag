@@ -11,7 +11,7 @@ in vec3 v_diffuse;
 in vec3 v_sheen;
 in vec4 v_surface;
 in vec4 v_detail;
-in vec2 v_lid;
+in vec4 v_lid;
 
 uniform sampler2D u_relief;    // slope x, slope y, openness, mottle; one level per view
 uniform sampler2D u_lids;      // slope x, slope y, openness, blood
@@ -42,15 +42,14 @@ void main() {
     vec4 face = textureLod(u_relief, v_detail.xy, 0.0);
     vec4 crepe = textureLod(u_lids, v_detail.zw, 0.0);
     vec4 colour = textureLod(u_colour, v_detail.xy * u_colour_scale, 0.0) - 0.5;
-    float strength = (1.0 + 1.6 * colour.a) * (1.0 - lid);
+    vec2 share = clamp(v_lid.zw, 0.0, 1.0) * vec2(1.0 + 1.6 * colour.a, 1.0);
     float shown = clamp(v_lid.y, 0.0, 1.0) * dry;
-    vec2 slope = ((face.xy - 0.5) * strength + (crepe.xy - 0.5) * lid) * (2.0 * u_slope_range * shown);
-    float open = mix(face.z, crepe.z, lid);
-    open = 1.0 - dry * (1.0 - open);
+    vec2 slope = ((face.xy - 0.5) * share.x + (crepe.xy - 0.5) * share.y) * (2.0 * u_slope_range * shown);
+    float open = 1.0 - shown * (1.0 - mix(face.z, crepe.z, lid));
     vec2 lost = u_lost_variance + (1.0 - shown * shown) * 0.03;
     float rough = 2.0 * mix(lost.x, lost.y, lid) * dry;  // Beckmann: m^2 is twice the variance
 
-    float blood = colour.r + (crepe.a - 0.5) * lid, melanin = colour.g + 0.6 * (face.a - 0.5);
+    float blood = colour.r + (crepe.a - 0.5) * lid, melanin = colour.g + 0.6 * shown * (face.a - 0.5);
     vec3 albedo = v_albedo * (1.0 - dry * (blood * BLOOD + melanin * MELANIN));
     albedo *= 1.0 - CAVITY * (1.0 - open);
 

@@ -24,7 +24,7 @@ out vec3 v_diffuse;
 out vec3 v_sheen;     // mirrored sky
 out vec4 v_surface;   // gloss, strength of the sun's mirror image, sun visibility, wetness
 out vec4 v_detail;
-out vec2 v_lid;      // in_lid; how much of the relief shows, less where the view grazes
+out vec4 v_lid;       // in_lid; how much of the relief shows; shares of face and lid in it
 
 const float SKIN_F0 = 0.028;
 const float TEAR_F0 = 0.021;
@@ -47,6 +47,9 @@ void main() {
     v_diffuse = in_diffuse;
     v_surface = vec4(gloss, strength, sun, wet);
     v_detail = in_detail;
-    v_lid = vec2(in_lid, smoothstep(0.05, 0.45, dot(n, v)));
+    // Where the view grazes, relief is finer than pixels. Where two reliefs mix, their variances add
+    // up to one's (Heitz and Neyret 2018), or a band of smooth skin would lie between them.
+    v_lid = vec4(in_lid, smoothstep(0.05, 0.4, dot(n, v)),
+        vec2(1.0 - in_lid, in_lid) * inversesqrt(1.0 - 2.0 * in_lid * (1.0 - in_lid)));
     gl_Position = u_projection * u_view_matrix * vec4(in_position, 1.0);
 }

@@ -56,7 +56,7 @@ def relief(rng: np.random.Generator, tile: Tile, *, nets: tuple[Net, ...], pores
     height = sum(net_relief(rng, tile, net) for net in nets)
     height = height + 0.0030 * periodic_noise(rng, tile, 0.06)
     height = height + 0.010 * periodic_noise(rng, tile, 0.45)
-    height = blurred(height - 0.085 * pits(rng, tile, count=pores), tile, 0.022)
+    height = blurred(height - 0.105 * pits(rng, tile, count=pores), tile, 0.022)
     return np.asarray(height - height.mean())
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import moderngl
 import numpy as np
 import pytest
@@ -27,8 +29,9 @@ def slopes(picture: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("make", [skin_maps.relief_tile, skin_maps.colour_tile])
-def test_tiles_repeat_without_a_seam_and_average_to_the_middle(make: object) -> None:
-    assert callable(make)
+def test_tiles_repeat_without_a_seam_and_average_to_the_middle(
+    make: Callable[[], skin_maps.Bytes],
+) -> None:
     tile = make().astype(float)
     for axis in (0, 1):
         inside = np.abs(np.diff(tile, axis=axis)).mean()
@@ -36,7 +39,6 @@ def test_tiles_repeat_without_a_seam_and_average_to_the_middle(make: object) -> 
         assert across < 1.4 * inside
     middle = (0, 1, 3)
     np.testing.assert_allclose(tile.mean(axis=(0, 1))[list(middle)], 127.5, atol=2.5)
-    np.testing.assert_array_equal(make(), tile)
 
 
 def test_the_lids_crepe_is_finer_than_the_cheeks_relief_and_finite(lids: np.ndarray) -> None:
