@@ -38,11 +38,14 @@ def calibrated_gain(
     values: dict[str, Any],
     open_rims: moderngl.Texture,
     mean_albedo: Array,
+    albedo: Array,
 ) -> Array:
     """Return the iris's gain per channel (3,) that gives it its map's mean colour.
 
-    ``values`` are the eye's uniforms for the clip. ``mean_albedo`` is linear Rec. 709.
+    ``values`` are the eye's uniforms for the clip. ``mean_albedo`` is linear Rec. 709, ``albedo``
+    (n, n, 3) that of the iris on its plane.
     """
+    values = values | {"u_chamber_map": _uniform_chamber(gl, albedo)}
     pixels = _diffuse_picture(gl, program, mesh=mesh, values=values, open_rims=open_rims)
     seen = pixels[_annulus(float(values["u_pupil_mm"]))].mean(axis=0)
     start = np.asarray(values["u_iris_gain"], dtype=np.float64)
@@ -68,7 +71,6 @@ def _diffuse_picture(
     camera = centre + CAMERA_MM * gaze
     half_angle = math.degrees(math.atan(MAP_EDGE_MM / (CAMERA_MM - IRIS_Z_MM)))
     projection = perspective(2 * half_angle, 1.0, 0.5 * CAMERA_MM, 2 * CAMERA_MM)
-    chamber = chamber_irradiance(np.ones_like, np.eye(3), rims=None, size_px=16)
     target = gl.framebuffer([gl.texture((MEASURE_PX, MEASURE_PX), 4, dtype="f4")])
     black = gl.texture_cube((1, 1), 4, np.zeros((6, 4), np.float16).tobytes(), dtype="f2")
     # Held until drawn: a texture that nothing refers to is released.
@@ -78,7 +80,6 @@ def _diffuse_picture(
         | {
             "u_sun_irradiance": np.zeros(3),
             "u_ambient_sh": _UNIFORM_SH,
-            "u_chamber_map": _texture(gl, np.pad(chamber, ((0, 0), (0, 0), (0, 1)))),
             "u_shade_map": _texture(gl, np.ones((1, 1, 4))),
             "u_lid_rims": open_rims,
             "u_view_matrix": look_at(camera, centre),
@@ -93,6 +94,13 @@ def _diffuse_picture(
         mesh.render()
     pixels = np.frombuffer(target.read(components=3, dtype="f4"), np.float32)
     return pixels.reshape(MEASURE_PX, MEASURE_PX, 3)
+
+
+def _uniform_chamber(gl: moderngl.Context, albedo: Array) -> moderngl.Texture:
+    chamber = chamber_irradiance(
+        np.ones_like, np.eye(3), rims=None, albedo=albedo, size_px=len(albedo)
+    )
+    return _texture(gl, np.pad(chamber, ((0, 0), (0, 0), (0, 1))))
 
 
 def _annulus(pupil_mm: float) -> npt.NDArray[np.bool_]:

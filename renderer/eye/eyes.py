@@ -21,19 +21,23 @@ from renderer.detail import Detail
 from renderer.eye.anatomy import shader_constants
 from renderer.eye.calibration import calibrated_gain, open_lids
 from renderer.eye.lids import LidRims
-from renderer.eye.maps import (
-    iris_values,
+from renderer.eye.maps import iris_values, plane_albedo, sclera_values, tissue_constants
+from renderer.eye.silhouette import Silhouette, detail_mesh, hull_mesh, vertex_array
+from renderer.eye.subsurface import DEPTH_MARGIN, MAX_DEPTH_MM
+from renderer.eye.sunlight import (
+    RELIEF_SHADE_PX,
+    relief_shade_map,
     rims_texture,
-    sclera_values,
     shade_map,
     sunlight_values,
 )
-from renderer.eye.silhouette import Silhouette, detail_mesh, hull_mesh, vertex_array
-from renderer.eye.subsurface import DEPTH_MARGIN, MAX_DEPTH_MM
+from renderer.iris.source import iris_of
 from renderer.light import Light
 from renderer.program import Program, build_program, detail_constants
 
 Array = npt.NDArray[np.float64]
+
+CHAMBER_PX: Final = 32  # ambient light varies slowly over the iris
 
 # Iris maps hold colours as photographs show them: through a cornea, half flash, half sky. Under a
 # flash the cornea returns 0.57 of what a bare iris would, under a sky nearly all of it.
@@ -66,9 +70,8 @@ class Eyes:
         light: Light,
         static_cube: Callable[[int], moderngl.TextureCube],
         crowd_cube: moderngl.TextureCube | None,
-        left_sum: bool = False,
     ) -> None:
-        """Build both eyes; ``left_sum`` takes the thesis's own subsurface sum instead of ours."""
+        """Build both eyes in their light; ``static_cube`` gives the surroundings at a size."""
         self._gl = gl
         self.models = tuple(
             self._build(
@@ -78,7 +81,6 @@ class Eyes:
                 rims=rims[eye],
                 light=light,
                 cubes=_cubes(detail, static_cube, crowd_cube),
-                left_sum=left_sum,
             )
             for eye, detail in enumerate((spec.left, spec.right))
         )
@@ -140,16 +142,13 @@ class Eyes:
         rims: LidRims,
         light: Light,
         cubes: dict[str, moderngl.TextureCube],
-        left_sum: bool,
     ) -> EyeModel:
-        program = build_program(
-            self._gl,
-            "eye.vert",
-            fragment="eye.frag",
-            constants=eye_constants(detail, left_sum=left_sum),
-        )
+        constants = eye_constants(detail, spec)
+        program = build_program(self._gl, "eye.vert", fragment="eye.frag", constants=constants)
         turn = gaze_rotation(*gaze_deg(spec, eye))
-        gain = APPARENT_GAIN if detail.caustics in {"high", "ultra"} else 1.0
+        is_gathered = detail.caustics in {"high", "ultra"} and spec.caustic_pattern == "computed"
+        mirror = 1.0 if eye == 0 else -1.0
+        albedo = plane_albedo(iris_of(spec), spec.pupil_mm, mirror=mirror, size_px=CHAMBER_PX)
         placed = {
             **light.uniforms(),
             "u_lid_rims": rims_texture(self._gl, rims),
@@ -160,11 +159,22 @@ class Eyes:
             **cubes,
             **iris_values(self._gl, spec, detail),
             **sclera_values(self._gl, spec, detail),
-            **sunlight_values(self._gl, detail, light.sky, eye_to_world=turn, rims=rims),
+            **sunlight_values(
+                self._gl,
+                detail,
+                light.sky,
+                eye_to_world=turn,
+                rims=rims,
+                albedo=albedo,
+                caustic_pattern=spec.caustic_pattern,
+            ),
             "u_shade_map": shade_map(self._gl, placed),
-            "u_mirror": 1.0 if eye == 0 else -1.0,
-            "u_iris_gain": np.full(3, gain),
+            "u_mirror": mirror,
+            "u_iris_gain": np.full(3, APPARENT_GAIN if is_gathered else 1.0),
         }
+        values["u_relief_shade"] = relief_shade_map(
+            self._gl, values, constants=constants, size_px=RELIEF_SHADE_PX.get(detail.texture, 0)
+        )
         is_fine = detail.setting("tessellation", "normals") == "analytic"
         mesh = vertex_array(self._gl, program, hull_mesh() if is_fine else detail_mesh(detail))
         if spec.preset == "calibrated":
@@ -175,19 +185,23 @@ class Eyes:
                 values=values,
                 open_rims=rims_texture(self._gl, open_lids()),
                 mean_albedo=np.asarray(values["u_iris_mean"]),
+                albedo=albedo,
             )
         silhouette = Silhouette(self._gl, detail_mesh(detail), rims=rims) if is_fine else None
         return EyeModel(program, mesh, values, silhouette)
 
 
-def eye_constants(detail: Detail, *, left_sum: bool = False) -> dict[str, int | float]:
+def eye_constants(detail: Detail, spec: ClipSpec) -> dict[str, int | float]:
     """Return the header of an eye's program: levels, their settings, the eye's numbers."""
+    samples = spec.subsurface_samples or int(detail.setting("subsurface", "samples"))
     return {
         **detail_constants(detail),
         **shader_constants(),
+        **tissue_constants(),
         "SUBSURFACE_NODES": int(detail.setting("subsurface", "nodes")),
-        "SUBSURFACE_SAMPLES": int(detail.setting("subsurface", "samples")),
-        "SUBSURFACE_LEFT_SUM": int(left_sum),
+        "SUBSURFACE_SAMPLES": samples,
+        "SUBSURFACE_LEFT_SUM": int(spec.subsurface_samples > 0),
+        "CAUSTICS_PAINTED": int(spec.caustic_pattern == "painted"),
         "MAX_DEPTH_MM": MAX_DEPTH_MM,
         "DEPTH_MARGIN": DEPTH_MARGIN,
     }

@@ -1,6 +1,6 @@
-"""What one eye's shader reads from textures: iris, sclera, sunlight inside the eye, lids' rims.
+"""What one eye's shader reads of its tissue: iris and sclera, their layers and their wet surface.
 
-The edge between numpy and GL: bakes come from the cache or are made, and become textures.
+Bakes come from the cache or are made, and become textures; ``sunlight`` has the light's maps.
 """
 
 from __future__ import annotations
@@ -11,46 +11,81 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.cache import cached_array
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye import sclera
-from renderer.eye.anatomy import shader_constants
-from renderer.eye.caustics import caustic_map
-from renderer.eye.chamber import chamber_irradiance
-from renderer.eye.lids import LidRims
-from renderer.eye.sclera import sclera_maps
+from renderer.eye.micro_relief import SLOPE_RANGE, TILE_MM, micro_relief_tile
+from renderer.eye.sclera import HALF_SIZE_MM, sclera_maps
 from renderer.eye.subsurface import subsurface_gain
-from renderer.iris import maps as iris
-from renderer.iris.maps import iris_maps, scattering
-from renderer.iris.pigment import linear_to_srgb
-from renderer.light import Sky
-from renderer.program import build_program
+from renderer.eye.textures import (
+    float_texture,
+    grey_texture,
+    packed_texture,
+    srgb_texture,
+    tiling_texture,
+    with_alpha,
+)
+from renderer.iris.maps import IRIS_RADIUS_MM, MAP_EDGE_MM, PUPIL_RADIUS_MM
+from renderer.iris.source import Iris, iris_of
 
 Array = npt.NDArray[np.float64]
 Values = dict[str, Any]
 
-SRGB8_ALPHA8: Final = 0x8C43
+HEIGHT_PX: Final = 512  # 0.023 mm: features that the steps through the relief do not miss
 THICKNESS_PX: Final = {"high": 512, "ultra": 1024}  # finer than the nodes of each level's march
-DIRECTION_MAP_PX: Final = 256  # refracted light's direction where no caustic is drawn
 MULTIPLE_SHARE: Final = 0.45  # of the reflectance: light scattered more than once, a smooth floor
-CHAMBER_PX: Final = 32  # ambient light varies slowly over the iris
-SHADE_MAP_PX: Final = 512  # 0.05 mm: finer than the softest edge of a shadow
-RIM_SAMPLES: Final = 128
-RIM_EDGE_MM: Final = 18.0
 
 
 def iris_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail) -> Values:
     """Return the iris's textures and colours for a LoD."""
     size = int(detail.setting("texture", "iris_map_px"))
-    maps = iris_maps(spec.iris_seed, spec.iris_colour, size_px=size)
-    colour = np.concatenate([maps.albedo, maps.cavity[..., None]], axis=-1)
+    source = iris_of(spec)
+    maps, height = source.maps(size), source.maps(min(size, HEIGHT_PX)).height_mm
+    highest = max(float(height.max()), 1e-3)
     return {
-        "u_iris_albedo": _srgb_texture(gl, colour),
-        "u_iris_normal": _packed_texture(gl, maps.normal),
-        "u_iris_mean": iris.mean_albedo(spec.iris_seed, spec.iris_colour),
+        "u_iris_albedo": srgb_texture(gl, with_alpha(maps.albedo, maps.cavity)),
+        "u_iris_normal": packed_texture(gl, maps.normal),
+        "u_iris_height": grey_texture(gl, _filled(height) / highest, mips=False),
+        "u_relief_mm": (highest, float(height[_tissue(len(height))].mean())),
+        "u_iris_mean": source.mean_albedo,
         "u_pupil_mm": spec.pupil_mm,
-    } | _subsurface_values(gl, spec, detail)
+    } | _subsurface_values(gl, source, detail)
+
+
+def _filled(height_mm: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    """Raise the pupil to the tissue beside it: in the relief it is a hole, not a cliff."""
+    axis = ((np.arange(len(height_mm)) + 0.5) / len(height_mm) * 2 - 1) * MAP_EDGE_MM
+    x, y = np.meshgrid(axis, axis)
+    outwards = np.maximum((PUPIL_RADIUS_MM + 0.12) / np.maximum(np.hypot(x, y), 1e-6), 1.0)
+    texel_mm = 2 * MAP_EDGE_MM / len(height_mm)
+    row, column = (((a * outwards + MAP_EDGE_MM) / texel_mm).astype(int) for a in (y, x))
+    limit = len(height_mm) - 1
+    return np.asarray(height_mm[np.clip(row, 0, limit), np.clip(column, 0, limit)])
+
+
+def _tissue(size_px: int) -> npt.NDArray[np.bool_]:
+    """Mark the texels between the maps' pupil and the root; all of them on a map of one."""
+    axis = ((np.arange(size_px) + 0.5) / size_px * 2 - 1) * MAP_EDGE_MM
+    radius = np.hypot(*np.meshgrid(axis, axis))
+    inside = (radius > PUPIL_RADIUS_MM + 0.1) & (radius < IRIS_RADIUS_MM - 0.1)
+    return np.asarray(inside | (size_px == 1))
+
+
+def plane_albedo(source: Iris, pupil_mm: float, *, mirror: float, size_px: int) -> Array:
+    """Return the iris as it lies in the eye, (size_px, size_px, 3): what lights the cornea within.
+
+    ``mirror`` -1 flips it as the right eye's is. The pupil and what lies beyond the root are black.
+    """
+    axis = ((np.arange(size_px) + 0.5) / size_px * 2 - 1) * MAP_EDGE_MM
+    x, y = np.meshgrid(axis, axis)
+    radius = np.maximum(np.hypot(x, y), 1e-6)
+    stretch = (IRIS_RADIUS_MM - PUPIL_RADIUS_MM) / (IRIS_RADIUS_MM - 0.5 * pupil_mm)
+    mapped = (PUPIL_RADIUS_MM + (radius - 0.5 * pupil_mm) * stretch) / radius
+    albedo = source.maps(size_px).albedo
+    place = [(a * mapped / MAP_EDGE_MM + 1) * size_px / 2 for a in (mirror * x, y)]
+    column, row = (np.clip(a.astype(int), 0, size_px - 1) for a in place)
+    tissue = (radius > 0.5 * pupil_mm) & (radius < IRIS_RADIUS_MM)
+    return np.where(tissue[..., None], albedo[row, column], 0.0).astype(np.float64)
 
 
 def sclera_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail) -> Values:
@@ -60,98 +95,32 @@ def sclera_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail) -> Value
     diffuse = sclera_maps(spec.iris_seed, size_px=diffuse_px).albedo
     normal = sclera_maps(spec.iris_seed, size_px=max(normal_px, 1)).normal
     return {
-        "u_sclera_albedo": _srgb_texture(gl, _with_alpha(diffuse)),
-        "u_sclera_normal": _packed_texture(gl, normal),
+        "u_sclera_albedo": srgb_texture(gl, with_alpha(diffuse)),
+        "u_sclera_normal": packed_texture(gl, normal),
         "u_sclera_mean": sclera.mean_albedo(spec.iris_seed),
+        "u_micro_relief": tiling_texture(gl, micro_relief_tile()),
     }
 
 
-def sunlight_values(
-    gl: moderngl.Context, detail: Detail, sky: Sky, *, eye_to_world: Array, rims: LidRims
-) -> Values:
-    """Return the maps of sun and sky inside the eye; ``eye_to_world`` is (3, 3)."""
-    sun_eye = np.asarray(sky.sun_direction, dtype=np.float64) @ eye_to_world
-    size = int(detail.setting("caustics", "caustic_map_px")) or DIRECTION_MAP_PX
-    caustic = cached_array(
-        f"caustic {size} {np.round(sun_eye, 9).tolist()}", lambda: caustic_map(sun_eye, size)
-    )
-    chamber = chamber_irradiance(sky.radiance, eye_to_world, rims=rims, size_px=CHAMBER_PX)
+def tissue_constants() -> dict[str, float]:
+    """Return the numbers that the shaders need to read these maps."""
     return {
-        "u_caustic_map": _float_texture(gl, _with_alpha(caustic)),
-        "u_chamber_map": _float_texture(gl, _with_alpha(chamber)),
+        "SCLERA_HALF_SIZE_MM": HALF_SIZE_MM,
+        "RELIEF_TILE_MM": TILE_MM,
+        "RELIEF_SLOPE_RANGE": SLOPE_RANGE,
     }
 
 
-def shade_map(gl: moderngl.Context, placed: Values) -> moderngl.Texture:
-    """Draw what sun and sky reach each point of the globe's front; ``placed`` light and rims."""
-    program = build_program(
-        gl, "screen.vert", fragment="eye_shade_map.frag", constants=shader_constants()
-    )
-    texture = gl.texture((SHADE_MAP_PX, SHADE_MAP_PX), 4, dtype="f2")
-    program.set(**placed, u_map_px=SHADE_MAP_PX)
-    with gl.scope(gl.framebuffer([texture]), moderngl.NOTHING):
-        gl.vertex_array(program.gl_program, []).render(moderngl.TRIANGLES, vertices=3)
-    return _clamped(texture)
-
-
-def rims_texture(gl: moderngl.Context, rims: LidRims) -> moderngl.Texture:
-    """Return the rims as a table over x: y of upper and lower rim, z of upper and lower rim."""
-    x = (np.arange(RIM_SAMPLES) + 0.5) / RIM_SAMPLES * 2 * RIM_EDGE_MM - RIM_EDGE_MM
-    columns = [
-        np.interp(x, curve[:, 0], curve[:, axis])
-        for axis in (1, 2)
-        for curve in (rims.upper_mm, rims.lower_mm)
-    ]
-    table = np.stack(columns, axis=-1).astype(np.float32)[None]
-    texture = gl.texture((RIM_SAMPLES, 1), 4, table.tobytes(), dtype="f4")
-    return _clamped(texture)
-
-
-def _subsurface_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail) -> Values:
+def _subsurface_values(gl: moderngl.Context, source: Iris, detail: Detail) -> Values:
     """Return the layers, their coefficients and the gain that ties them to the map's colour."""
-    size = THICKNESS_PX.get(detail.subsurface, 1)
-    layers = iris_maps(spec.iris_seed, spec.iris_colour, size_px=size).thickness_mm
-    mean = iris.mean_thickness_mm(spec.iris_seed, spec.iris_colour).astype(np.float64)
-    tissue = scattering(spec.iris_colour)
+    layers = source.maps(THICKNESS_PX.get(detail.subsurface, 1)).thickness_mm
+    mean = source.mean_thickness_mm.astype(np.float64)
+    tissue = source.tissue
     return {
-        "u_thickness": _float_texture(gl, layers),
+        "u_thickness": float_texture(gl, layers),
         "u_sigma_s": tissue.sigma_s.T,
         "u_sigma_t": tissue.sigma_t.T,
         "u_anisotropy": tissue.anisotropy,
         "u_subsurface_gain": subsurface_gain(mean, tissue),
         "u_multiple_share": MULTIPLE_SHARE,
     }
-
-
-def _with_alpha(colour: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    return np.concatenate([colour, np.ones_like(colour[..., :1])], axis=-1)
-
-
-def _srgb_texture(gl: moderngl.Context, colour: npt.NDArray[Any]) -> moderngl.Texture:
-    """Upload linear colour (n, n, 4) as sRGB with a linear alpha."""
-    encoded = np.concatenate([linear_to_srgb(colour[..., :3]), colour[..., 3:]], axis=-1)
-    pixels = np.rint(np.clip(encoded, 0, 1) * 255).astype(np.uint8)
-    size = pixels.shape[1::-1]
-    return _clamped(gl.texture(size, 4, pixels.tobytes(), internal_format=SRGB8_ALPHA8), mips=True)
-
-
-def _packed_texture(gl: moderngl.Context, normal: npt.NDArray[Any]) -> moderngl.Texture:
-    """Upload unit normals (n, n, 3) packed to 0..1."""
-    pixels = np.rint(_with_alpha(0.5 + 0.5 * normal) * 255).astype(np.uint8)
-    return _clamped(gl.texture(pixels.shape[1::-1], 4, pixels.tobytes()), mips=True)
-
-
-def _float_texture(gl: moderngl.Context, values: npt.NDArray[Any]) -> moderngl.Texture:
-    """Upload (n, n, 4) as half floats."""
-    data = np.ascontiguousarray(values, dtype=np.float16).tobytes()
-    return _clamped(gl.texture(values.shape[1::-1], 4, data, dtype="f2"), mips=True)
-
-
-def _clamped(texture: moderngl.Texture, *, mips: bool = False) -> moderngl.Texture:
-    texture.repeat_x = texture.repeat_y = False
-    if mips:
-        texture.build_mipmaps()
-        texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-    else:
-        texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
-    return texture

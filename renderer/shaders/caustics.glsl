@@ -1,14 +1,18 @@
 // Provides: the effect "caustics": the light that reaches a point of the iris.
 // Off, low, medium: the sun's plain cosine, the sky's plain irradiance. High, ultra: the light that
-// the cornea lets in and gathers, from maps of this clip (renderer/eye/caustics.py, chamber.py).
+// the cornea lets in and gathers, from maps of this clip (renderer/eye/caustics.py, chamber.py); or, as
+// in the thesis, a painted pattern on top of the plain cosine (painted_caustic.py).
 
 uniform sampler2D u_caustic_map;   // light's direction x, y; gain of irradiance
+uniform sampler2D u_relief_shade;  // of the sun by the iris's relief, over SHADE_RANGE
 uniform sampler2D u_chamber_map;   // irradiance of the surroundings inside the chamber
+uniform sampler2D u_painted_caustic;  // the thesis's pattern, brightest towards +x
 
 struct IrisLight {
     vec3 sun;        // irradiance on the iris plane
     vec3 ambient;
     vec3 w_eye;      // unit, the sunlight's direction of travel at the iris
+    vec3 painted;    // radiance that the thesis's pattern adds to a white iris
 };
 
 // Sunlight enters where it enters, not where the viewer looks in: go back up to the cornea.
@@ -23,25 +27,43 @@ vec3 light_entry(vec2 x_mm, vec3 w_eye) {
     return vec3(p.xy, height);
 }
 
+// Thesis section 4.6: the map is summed with the iris's colour by the angles of view and light. It
+// turns away from the sun, slides outwards and grows brighter as sunlight comes in lower.
+vec3 painted_pattern(vec2 x_mm, Surface s, vec3 toward_sun, float reaching) {
+    float sine = length(toward_sun.xy), facing = max(dot(s.n_eye, s.v_eye), 0.0);
+    vec2 away = -toward_sun.xy / max(sine, 1e-3);
+    vec2 turned = vec2(dot(x_mm, away), dot(x_mm, vec2(-away.y, away.x)));
+    turned.x += 1.2 * (1.0 - sine);
+    float texel_mm = 2.0 * MAP_EDGE_MM / float(textureSize(u_painted_caustic, 0).x);
+    float lod = max(log2(u_mm_per_px / (MAGNIFICATION * texel_mm)), 0.0);
+    float pattern = textureLod(u_painted_caustic, plane_uv(turned), lod).r;
+    return u_sun_irradiance * (reaching * pattern * sine * facing * smoothstep(-0.2, 0.1, toward_sun.z));
+}
+
+// The sunlight's direction of travel at the iris: bent where view or light is refracted.
+vec3 light_direction(vec2 x_mm) {
+    if (REFRACTION < HIGH && CAUSTICS < HIGH) return -turned_to_eye(u_sun_direction);
+    vec2 q = textureLod(u_caustic_map, plane_uv(x_mm), plane_lod(u_caustic_map)).xy;
+    return normalize(vec3(q, -sqrt(max(1.0 - dot(q, q), 0.01))));
+}
+
 IrisLight light_on_iris(vec2 x_mm, Surface s) {
     IrisLight light;
     vec3 toward_sun = turned_to_eye(u_sun_direction);
-    float reaching = s.sun;
-    float gain = max(toward_sun.z, 0.0);
-    light.w_eye = -toward_sun;
+    float reaching = s.sun, gain = max(toward_sun.z, 0.0);
+    light.w_eye = light_direction(x_mm);
+    light.painted = vec3(0.0);
     light.ambient = ambient_irradiance(turned_to_world(vec3(0.0, 0.0, 1.0))) * s.sky;
-    if (REFRACTION >= HIGH || CAUSTICS >= HIGH) {
-        vec3 q = textureLod(u_caustic_map, plane_uv(x_mm), plane_lod(u_caustic_map)).rgb;
-        light.w_eye = normalize(vec3(q.xy, -sqrt(max(1.0 - dot(q.xy, q.xy), 0.01))));
-        if (CAUSTICS >= HIGH) {
-            // Radiance falls by n^2 on its way out of the chamber (Nicodemus): counted here, where
-            // the way in is counted, so that both stand or fall together.
-            gain = q.z / (CORNEA_IOR * CORNEA_IOR);
-            light.ambient = textureLod(u_chamber_map, plane_uv(x_mm), 0.0).rgb
-                          / (CORNEA_IOR * CORNEA_IOR);
-            reaching = shade_at(light_entry(x_mm, light.w_eye)).a;
-        }
+    if (CAUSTICS >= HIGH && CAUSTICS_PAINTED == 0) {
+        // Radiance falls by n^2 on its way out of the chamber (Nicodemus): counted here, where the
+        // way in is counted, so that both stand or fall together.
+        float n2 = CORNEA_IOR * CORNEA_IOR;
+        gain = textureLod(u_caustic_map, plane_uv(x_mm), plane_lod(u_caustic_map)).b / n2;
+        light.ambient = textureLod(u_chamber_map, plane_uv(x_mm), 0.0).rgb / n2;
+        reaching = shade_at(light_entry(x_mm, light.w_eye)).a;
     }
+    if (CAUSTICS >= HIGH && CAUSTICS_PAINTED == 1)
+        light.painted = painted_pattern(x_mm, s, toward_sun, reaching);
     light.sun = u_sun_irradiance * gain * reaching;
     return light;
 }
@@ -53,9 +75,8 @@ vec3 limbal_radiance(Surface s) {
     return LIMBAL_TISSUE * (u_sun_irradiance * s.sun * cosine + ambient) / PI;
 }
 
-// The relief's cosine relative to the flat plane's, which the irradiance already holds.
-float relief_shading(IrisTexel texel, IrisLight light) {
+// What the relief makes of the sun's light, from the clip's own map (iris_shade_map.frag).
+float relief_shade(vec2 x_mm) {
     if (TEXTURE < HIGH) return 1.0;
-    float flat_cosine = max(-light.w_eye.z, 0.35);
-    return clamp(dot(texel.n_eye, -light.w_eye) / flat_cosine, 0.0, 1.8) * mix(1.0, texel.cavity, 0.5);
+    return SHADE_RANGE * textureLod(u_relief_shade, plane_uv(x_mm), plane_lod(u_relief_shade)).r;
 }

@@ -7,8 +7,10 @@
 #include "tessellation.glsl"
 #include "refraction.glsl"
 #include "texture.glsl"
+#include "relief.glsl"
 #include "caustics.glsl"
 #include "subsurface.glsl"
+#include "tear_film.glsl"
 #include "sclera.glsl"
 #include "reflection.glsl"
 
@@ -19,22 +21,28 @@ out vec4 f_radiance;
 
 vec3 iris_radiance(Surface s) {
     ViewRay ray = view_through_cornea(s);
+    int is_relief = TEXTURE >= HIGH && relief_share() > 0.0 ? 1 : 0;
+    for (int i = 0; i < is_relief; ++i) ray.x_mm = on_relief(ray.x_mm, ray.d_eye);
     IrisTexel texel = iris_texel(ray.x_mm);
     IrisLight light = light_on_iris(ray.x_mm, s);
     vec3 reflectance = iris_reflectance(texel, ray, light);
-    vec3 sun = light.sun * relief_shading(texel, light);
+    vec3 sun = light.sun * relief_shade(ray.x_mm);
     vec3 ambient = light.ambient * texel.cavity;
-    vec3 iris = u_iris_gain * reflectance * (sun + ambient) / PI;
+    vec3 iris = u_iris_gain * (reflectance * (sun + ambient) + u_iris_mean * light.painted) / PI;
     return ray.transmitted * mix(iris, limbal_radiance(s), beyond_root(length(ray.x_mm)));
 }
 
 vec3 eye_radiance(Surface s) {
+    s = with_waves(s);
     vec3 body = vec3(0.0);
     // Software GL jumps over loops that no pixel of a block enters, but computes both sides of if.
     int iris = s.cornea > 0.002 ? 1 : 0, sclera = s.cornea < 0.998 ? 1 : 0;
     for (int i = 0; i < iris; ++i) body += s.cornea * iris_radiance(s);
-    for (int i = 0; i < sclera; ++i) body += (1.0 - s.cornea) * sclera_radiance(s);
-    return min(body + tear_film_radiance(s), vec3(6e4));
+    for (int i = 0; i < sclera; ++i) {
+        s = on_sclera(s);
+        body += (1.0 - s.cornea) * sclera_radiance(s);
+    }
+    return min(body * limbal_ring(s) + tear_film_radiance(s), vec3(6e4));
 }
 
 void main() {

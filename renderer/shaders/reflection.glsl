@@ -8,23 +8,26 @@ uniform samplerCube u_crowd_cube;    // premultiplied radiance and coverage of t
 
 const float CORNEA_ROUGHNESS = 0.055;        // tear film over the cornea
 const float CORNEA_EXPONENT = 400.0;         // Blinn-Phong, at medium
-const float SCLERA_EXPONENT = 220.0;
-const float SCLERA_BLUR = 2.0;               // mips by which the bumpy sclera's mirror is blurred
+const float SCLERA_EXPONENT = 220.0;         // of a plain sclera
+const float FILM_EXPONENT = 2400.0;          // of the film between the bumps of its relief
+const float PLAIN_BLUR = 0.05;               // radians by which a plain sclera's mirror is blurred
 const float MENISCUS_MM = 0.4;               // height of the tears along the lower lid
 
 // The tear line climbs up the lower lid: its normal turns from the globe's towards the sky.
 vec3 tear_normal(Surface s) {
-    if (REFLECTION < HIGH) return s.n_eye;
+    if (REFLECTION < HIGH) return s.n_eye;  // a plain mirror
     float above = s.p_eye.y - rims_at(s.p_eye.x).y;
     float bend = 1.0 - smoothstep(0.0, MENISCUS_MM, above);
-    return normalize(s.n_eye + 0.9 * bend * vec3(0.0, 1.0, 0.0));
+    return normalize(s.n_film + 0.9 * bend * vec3(0.0, 1.0, 0.0));
 }
 
 // Walter et al. 2007, eq. 33 and 34 (GGX, height-correlated shadowing), without Fresnel's factor.
-// alpha grows by the turn of the surface within a pixel, so that the glint never falls between.
-float ggx(float NoH, float NoL, float NoV) {
+// alpha grows by the turn of the surface within a pixel, so that the glint never falls between, by
+// half of the sun's own radius, and by the waves that a pixel averages.
+float ggx(float NoH, float NoL, float NoV, float variance) {
     float turn = 0.5 * u_mm_per_px / CORNEA_RADIUS_MM;
-    float a2 = pow(CORNEA_ROUGHNESS, 4.0) + turn * turn;
+    float sun = radians(0.5 * SUN_ANGULAR_RADIUS_DEG);
+    float a2 = pow(CORNEA_ROUGHNESS, 4.0) + turn * turn + sun * sun + 2.0 * variance;
     float d = NoH * NoH * (a2 - 1.0) + 1.0;
     float v = NoL * sqrt(NoV * NoV * (1.0 - a2) + a2) + NoV * sqrt(NoL * NoL * (1.0 - a2) + a2);
     return a2 / (PI * d * d) * 0.5 / max(v, 1e-4);
@@ -35,28 +38,35 @@ float blinn_phong(float NoH, float exponent) {
     return (exponent + 8.0) / (8.0 * PI) * pow(NoH, exponent);
 }
 
+// The exponent of a lobe whose slopes vary by more: 1 / (n + 2) is their variance per axis.
+float spread(float exponent, float variance) {
+    return 1.0 / (1.0 / (exponent + 2.0) + variance) - 2.0;
+}
+
 float highlight_on(vec3 n, Surface s, vec3 l, bool is_ggx, float exponent) {
     vec3 h = normalize(l + s.v_eye);
     float NoH = clamp(dot(n, h), 0.0, 1.0), NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, s.v_eye), 0.02, 1.0);
-    float lobe = is_ggx ? ggx(NoH, NoL, NoV) : blinn_phong(NoH, exponent);
+    float lobe = is_ggx ? ggx(NoH, NoL, NoV, s.film_variance) : blinn_phong(NoH, exponent);
     return fresnel(clamp(dot(l, h), 0.0, 1.0)) * lobe * NoL;
 }
 
 vec3 sun_highlight(Surface s, vec3 n_tear) {
-    vec3 l = turned_to_eye(u_sun_direction);
+    vec3 l = turned_to_eye(u_sun_direction), h = normalize(l + s.v_eye);
+    float exponent = SCLERA >= HIGH ? spread(FILM_EXPONENT, s.film_variance) : SCLERA_EXPONENT;
     float on_cornea = 0.0, on_sclera = 0.0;
-    if (REFLECTION >= MEDIUM)
+    // Farther than 18 degrees from the mirror's direction every lobe here is below 1e-3.
+    int cornea = REFLECTION >= MEDIUM && s.cornea > 0.002 && dot(n_tear, h) > 0.95 ? 1 : 0;
+    int sclera = s.cornea < 0.998 && dot(s.n_film, h) > 0.95 ? 1 : 0;
+    for (int i = 0; i < cornea; ++i)
         on_cornea = highlight_on(n_tear, s, l, REFLECTION >= HIGH, CORNEA_EXPONENT);
-    if (SCLERA >= HIGH || REFLECTION >= MEDIUM)
-        on_sclera = highlight_on(sclera_normal(s), s, l, false, SCLERA_EXPONENT);
+    for (int i = 0; i < sclera; ++i) on_sclera = highlight_on(s.n_film, s, l, false, exponent);
     return u_sun_irradiance * s.sun * mix(on_sclera, on_cornea, s.cornea);
 }
 
-vec3 surroundings(vec3 d_world, float blur) {
-    float cone = 2.0 * u_mm_per_px / CORNEA_RADIUS_MM;
+vec3 surroundings(vec3 d_world, float cone) {
     float texel = 0.5 * PI / float(textureSize(u_static_cube, 0).x);
-    float lod = max(log2(cone / texel), 0.0) + blur;
+    float lod = max(log2(cone / texel), 0.0);
     vec3 radiance = textureLod(u_static_cube, d_world, lod).rgb;
     if (REFLECTION >= ULTRA) {
         vec4 people = textureLod(u_crowd_cube, d_world, lod);
@@ -71,7 +81,9 @@ vec3 mirrored(Surface s, vec3 n) {
     vec3 d_world = turned_to_world(d);
     float open_share = lid_openness(s.p_eye, d, 0.9) * smoothstep(-0.15, 0.25, d_world.z);
     vec3 skin = LID_REFLECTANCE * ambient_irradiance(vec3(0.0, 0.0, 1.0)) * (0.5 / PI);
-    vec3 seen = mix(skin, surroundings(d_world, (1.0 - s.cornea) * SCLERA_BLUR), open_share);
+    float cone = 2.0 * u_mm_per_px / CORNEA_RADIUS_MM + 4.0 * sqrt(s.film_variance);
+    if (SCLERA < HIGH || REFLECTION < HIGH) cone += (1.0 - s.cornea) * PLAIN_BLUR;
+    vec3 seen = mix(skin, surroundings(d_world, cone), open_share);
     return fresnel(clamp(dot(n, s.v_eye), 0.0, 1.0)) * seen;
 }
 

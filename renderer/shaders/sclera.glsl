@@ -7,6 +7,7 @@ uniform sampler2D u_sclera_normal;
 uniform vec3 u_sclera_mean;
 
 const float SCLERA_EDGE = 1.91986218;           // 110 degrees: where the maps end
+const vec3 SHADE_SEEP = vec3(0.72, 0.98, 1.05);
 const vec3 SCATTER_WRAP = vec3(0.30, 0.17, 0.12);  // light bleeds past the terminator, red furthest
 
 vec2 sclera_uv(vec3 direction) {
@@ -20,27 +21,37 @@ float sclera_lod(sampler2D map) {
     return max(log2(u_mm_per_px / texel_mm), 0.0);
 }
 
-vec3 sclera_albedo(vec3 direction) {
-    if (SCLERA < LOW) return u_sclera_mean;
-    return textureLod(u_sclera_albedo, sclera_uv(direction), sclera_lod(u_sclera_albedo)).rgb;
+// A slope on the map, turned with the rotation that takes +z to the point's direction.
+vec3 turned_slope(vec2 slope, vec3 c) {
+    float k = dot(c.xy, slope) / (1.0 + max(c.z, -0.9));
+    return vec3(slope - k * c.xy, -dot(c.xy, slope));
 }
 
-// The map's normal, turned with the rotation that takes +z to the point's direction.
-vec3 sclera_normal(Surface s) {
-    if (SCLERA < HIGH) return s.n_eye;
+// What the maps say of a point of the white: colour, tissue's normal, the film's normal over it.
+Surface on_sclera(Surface s) {
     vec3 c = normalize(s.p_eye);
-    vec3 n = 2.0 * textureLod(u_sclera_normal, sclera_uv(c), sclera_lod(u_sclera_normal)).xyz - 1.0;
-    float k = 1.0 / (1.0 + max(c.z, -0.9));
-    vec3 tx = vec3(1.0 - c.x * c.x * k, -c.x * c.y * k, -c.x);
-    vec3 ty = vec3(-c.x * c.y * k, 1.0 - c.y * c.y * k, -c.y);
-    return normalize(s.n_eye + (1.0 - s.cornea) * (n.x * u_mirror * tx + n.y * ty));
+    vec2 uv = sclera_uv(c), mirror = vec2(u_mirror, 1.0);
+    s.albedo = u_sclera_mean;
+    if (SCLERA >= LOW)
+        s.albedo = textureLod(u_sclera_albedo, uv, sclera_lod(u_sclera_albedo)).rgb;
+    if (SCLERA >= HIGH) {
+        float white = 1.0 - s.cornea;
+        vec2 n = 2.0 * textureLod(u_sclera_normal, uv, sclera_lod(u_sclera_normal)).xy - 1.0;
+        s.n_tissue = normalize(s.n_eye + white * turned_slope(n * mirror, c));
+        vec4 tile = relief_tile((2.0 * uv - 1.0) * SCLERA_HALF_SIZE_MM);
+        s.n_film = normalize(mix(s.n_tissue, s.n_film, s.cornea)
+                             + white * turned_slope(tile.xy * mirror, c));
+        s.film_variance = mix(tile.z, s.film_variance, s.cornea);
+    }
+    return s;
 }
 
 vec3 sclera_radiance(Surface s) {
-    vec3 n = sclera_normal(s);
+    vec3 n = s.n_tissue;
     float cosine = dot(n, turned_to_eye(u_sun_direction));
     vec3 wrapped = max((cosine + SCATTER_WRAP) / ((1.0 + SCATTER_WRAP) * (1.0 + SCATTER_WRAP)), 0.0);
-    vec3 sun = u_sun_irradiance * s.sun * wrapped;
+    // Light seeps into the lids' shade, red furthest.
+    vec3 sun = u_sun_irradiance * pow(vec3(s.sun), SHADE_SEEP) * wrapped;
     vec3 ambient = ambient_irradiance(turned_to_world(n)) * s.sky;
-    return sclera_albedo(normalize(s.p_eye)) * (sun + ambient) / PI;
+    return s.albedo * (sun + ambient) / PI;
 }

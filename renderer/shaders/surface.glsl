@@ -13,6 +13,10 @@ struct Surface {
     vec3 n_eye;      // unit, outwards
     vec3 v_eye;      // unit, towards the camera
     float cornea;    // 1 clear cornea .. 0 opaque sclera
+    vec3 albedo;     // of the sclera
+    vec3 n_tissue;   // unit, of the sclera under the film
+    vec3 n_film;     // unit, of the tear film with its fine relief
+    float film_variance;  // of the film's slope within a pixel, per axis
     float sun;       // share of the sun that reaches it
     vec3 sky;        // share of the sky that it sees past the lids
 };

@@ -54,6 +54,9 @@ Surface surface_at(vec3 p_mesh, vec3 n_mesh) {
         s.n_eye = formula_normal(s.p_eye);
     }
     s.v_eye = normalize(camera_eye - s.p_eye);
+    s.albedo = vec3(0.0);
+    s.n_tissue = s.n_film = s.n_eye;
+    s.film_variance = 0.0;
     s.cornea = cornea_share(s.p_eye);
     vec4 shade = shade_at(s.p_eye);
     s.sun = shade.a;

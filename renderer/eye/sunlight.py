@@ -1,0 +1,108 @@
+"""What one eye's shader reads of light: sunlight and sky inside the eye, shade of lids and head."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import moderngl
+import numpy as np
+import numpy.typing as npt
+
+from renderer.cache import cached_array
+from renderer.detail import Detail
+from renderer.eye.anatomy import shader_constants
+from renderer.eye.caustics import MAP_EDGE_MM, caustic_map
+from renderer.eye.chamber import chamber_irradiance
+from renderer.eye.lids import LidRims
+from renderer.eye.painted_caustic import painted_caustic
+from renderer.eye.textures import clamped, float_texture, grey_texture, with_alpha
+from renderer.light import Sky
+from renderer.program import Constants, build_program
+
+Array = npt.NDArray[np.float64]
+Values = dict[str, Any]
+
+DIRECTION_MAP_PX: Final = 256  # refracted light's direction where no caustic is drawn
+RELIEF_SHADE_PX: Final = {"high": 512, "ultra": 1024}  # per level of texture
+SHADE_MAP_PX: Final = 512  # 0.05 mm: finer than the softest edge of a shadow
+RIM_SAMPLES: Final = 128
+RIM_EDGE_MM: Final = 18.0
+
+
+def sunlight_values(
+    gl: moderngl.Context,
+    detail: Detail,
+    sky: Sky,
+    *,
+    eye_to_world: Array,
+    rims: LidRims,
+    albedo: Array,
+    caustic_pattern: str = "computed",
+) -> Values:
+    """Return the maps of sun and sky inside the eye; ``eye_to_world`` is (3, 3).
+
+    ``albedo`` (n, n, 3) is the iris's on its plane: some of its light comes back from the cornea.
+    ``caustic_pattern`` "painted" adds the thesis's painted map; direction alone is then computed.
+    """
+    sun_eye = np.asarray(sky.sun_direction, dtype=np.float64) @ eye_to_world
+    map_px = int(detail.setting("caustics", "caustic_map_px"))
+    is_painted = caustic_pattern == "painted"
+    size = DIRECTION_MAP_PX if is_painted else map_px or DIRECTION_MAP_PX
+    caustic = cached_array(
+        f"caustic {size} {np.round(sun_eye, 9).tolist()}", lambda: caustic_map(sun_eye, size)
+    )
+    chamber = chamber_irradiance(
+        sky.radiance, eye_to_world, rims=rims, albedo=albedo, size_px=len(albedo)
+    )
+    return {
+        "u_caustic_map": float_texture(gl, with_alpha(caustic)),
+        "u_chamber_map": float_texture(gl, with_alpha(chamber)),
+        "u_painted_caustic": grey_texture(gl, _painting(map_px if is_painted else 0)),
+    }
+
+
+def _painting(size_px: int) -> npt.NDArray[np.float32]:
+    return painted_caustic(size_px) if size_px else np.zeros((1, 1), np.float32)
+
+
+def shade_map(gl: moderngl.Context, placed: Values) -> moderngl.Texture:
+    """Draw what sun and sky reach each point of the globe's front; ``placed`` light and rims."""
+    program = build_program(
+        gl, "screen.vert", fragment="eye_shade_map.frag", constants=shader_constants()
+    )
+    texture = gl.texture((SHADE_MAP_PX, SHADE_MAP_PX), 4, dtype="f2")
+    program.set(**placed, u_map_px=SHADE_MAP_PX)
+    with gl.scope(gl.framebuffer([texture]), moderngl.NOTHING):
+        gl.vertex_array(program.gl_program, []).render(moderngl.TRIANGLES, vertices=3)
+    return clamped(texture)
+
+
+def relief_shade_map(
+    gl: moderngl.Context, values: Values, *, constants: Constants, size_px: int
+) -> moderngl.Texture:
+    """Draw what the iris's relief makes of the sun's light; ``values`` are the eye's uniforms.
+
+    ``constants`` are the header of the eye's program. Without relief one white texel is enough.
+    """
+    if size_px == 0:
+        return grey_texture(gl, np.ones((1, 1)))
+    program = build_program(gl, "screen.vert", fragment="iris_shade_map.frag", constants=constants)
+    texture = gl.texture((size_px, size_px), 1)
+    known = {name: value for name, value in values.items() if name in program.declared}
+    program.set(**known, u_map_px=size_px, u_mm_per_px=2 * MAP_EDGE_MM / size_px)
+    with gl.scope(gl.framebuffer([texture]), moderngl.NOTHING):
+        gl.vertex_array(program.gl_program, []).render(moderngl.TRIANGLES, vertices=3)
+    return clamped(texture, mips=True)
+
+
+def rims_texture(gl: moderngl.Context, rims: LidRims) -> moderngl.Texture:
+    """Return the rims as a table over x: y of upper and lower rim, z of upper and lower rim."""
+    x = (np.arange(RIM_SAMPLES) + 0.5) / RIM_SAMPLES * 2 * RIM_EDGE_MM - RIM_EDGE_MM
+    columns = [
+        np.interp(x, curve[:, 0], curve[:, axis])
+        for axis in (1, 2)
+        for curve in (rims.upper_mm, rims.lower_mm)
+    ]
+    table = np.stack(columns, axis=-1).astype(np.float32)[None]
+    texture = gl.texture((RIM_SAMPLES, 1), 4, table.tobytes(), dtype="f4")
+    return clamped(texture)
