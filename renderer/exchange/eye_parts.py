@@ -25,6 +25,8 @@ from renderer.iris.maps import MAP_EDGE_MM
 
 FINE_RINGS: Final = 128  # of the globe: 0.1 mm on the cornea, flat within 0.2 micrometres
 FINE_SEGMENTS: Final = 256
+BEHIND_RADIUS_MM: Final = 4.6  # wider than the widest pupil, 0.3 mm behind its edge
+BEHIND_MM: Final = 0.3
 RELIEF_RINGS: Final = 160  # of the iris: 0.025 mm, half a strand
 RELIEF_SEGMENTS: Final = 640
 
@@ -54,7 +56,8 @@ def iris_disc(*, pupil_mm: float, mirror: bool, rings: int = 24, segments: int =
     """Return the flat iris from the pupil's edge to its root, and the wall up to the limbus.
 
     Stretched for the pupil, so the maps stay as they are. The wall, the dark tissue of the
-    chamber's angle, keeps anybody from looking past the root into the globe.
+    chamber's angle, keeps anybody from looking past the root into the globe, and a black disc
+    behind the pupil from looking through it.
     """
     return _iris(0.5 * pupil_mm, mirror=mirror, rings=rings, segments=segments, height_mm=None)
 
@@ -90,7 +93,16 @@ def _iris(
     if height_mm is not None:
         points[:, 2] += _sampled(height_mm, uv) - _mean_height(height_mm)
     tissue = Mesh(points, _vertex_normals(points, triangles), triangles, uv)
-    return joined([tissue, _wall(points[-segments:], uv[-segments:])])
+    return joined([tissue, _wall(points[-segments:], uv[-segments:]), _behind_pupil(segments)])
+
+
+def _behind_pupil(segments: int) -> Mesh:
+    """Return the black that shows through any pupil: a disc in the colour of the maps' middle."""
+    rim = [BEHIND_RADIUS_MM, IRIS_Z_MM - BEHIND_MM]
+    points, triangles = revolved(np.array([[0.0, rim[1]], rim]), segments)
+    count = len(points)
+    forwards = np.tile([0.0, 0.0, 1.0], (count, 1))
+    return Mesh(points, forwards, triangles, np.full((count, 2), 0.5))
 
 
 def _wall(root: Floats, uv: Floats) -> Mesh:

@@ -14,7 +14,7 @@ import numpy as np
 from renderer.detail import Detail
 from renderer.exchange.eye_parts import iris_disc, sclera_uv, stretched
 from renderer.exchange.meshes import Floats, Mesh, Triangles
-from renderer.eye.anatomy import IRIS_MAP_RADIUS_MM, LIMBUS_RADIUS_MM
+from renderer.eye.anatomy import IRIS_MAP_RADIUS_MM, LIMBUS_RADIUS_MM, MAP_PUPIL_RADIUS_MM
 from renderer.eye.geometry import eye_mesh
 from renderer.eye.optics import unit
 from renderer.iris.maps import MAP_EDGE_MM
@@ -69,11 +69,13 @@ def iris_targets(iris: Mesh, *, pupil_mm: float) -> list[Floats]:
         raise ValueError("an iris without map coordinates cannot be stretched")
     on_map = (2.0 * iris.uv - 1.0) * MAP_EDGE_MM
     tissue = np.minimum(np.hypot(*on_map.T), IRIS_MAP_RADIUS_MM)
+    is_tissue = tissue[:, None] > 0.5 * MAP_PUPIL_RADIUS_MM  # not the black behind the pupil
     now = stretched(tissue, 0.5 * pupil_mm)
     radius = np.maximum(np.hypot(*iris.positions[:, :2].T), 1e-9)
     outward = iris.positions * [1.0, 1.0, 0.0] / radius[:, None]
     return [
-        outward * (stretched(tissue, 0.5 * target) - now)[:, None] for target in PUPIL_TARGETS_MM
+        is_tissue * outward * (stretched(tissue, 0.5 * target) - now)[:, None]
+        for target in PUPIL_TARGETS_MM
     ]
 
 

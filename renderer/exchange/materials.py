@@ -24,7 +24,7 @@ MATERIALS: Final[dict[str, dict[str, Any]]] = {
     "iris": {
         "kind": "diffuse, four scattering layers beneath",
         "reflectance": "textures: iris_albedo times iris_gain; iris_normal; iris_thickness",
-        "meaning": "inside the cornea's medium; the pupil is a hole, black behind",
+        "meaning": "inside the cornea's medium; the pupil is a hole with black behind",
     },
     "skin": {"kind": "diffuse with subsurface scattering", "reflectance": "vertices", "ior": 1.4},
     "wet tissue": {

@@ -20,7 +20,8 @@ Meshes    meshes/*.ply, binary, counter-clockwise seen from outside, unit normal
 Eyes      cornea and sclera are one surface, cut at the limbus, with the same vertices there. The
           renderer itself fades from one to the other over about a millimetre. iris is the flat
           disc with the hole of the pupil and the wall up to the limbus; iris_relief is the same
-          with its height field: take one of the two. Put something black behind the pupil.
+          with its height field: take one of the two. The disc behind the pupil has the black of
+          the map's middle.
 Optics    one smooth interface, air 1.0 outside, 1.336 inside. Some path tracers take 1.000277 for
           air unless told. Light from a point or a direction through a smooth interface is seen by
           photon or light tracing only; textures/caustic_*.exr has it solved: multiply its

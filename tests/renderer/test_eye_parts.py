@@ -62,11 +62,15 @@ def test_the_whites_map_looks_along_the_gaze_and_is_mirrored_for_the_right_eye()
 
 def test_the_iris_lies_on_its_plane_with_the_pupils_hole_and_a_wall() -> None:
     iris = iris_disc(pupil_mm=5.0, mirror=False)
-    r = np.hypot(*iris.positions[:, :2].T)
-    assert r.min() == pytest.approx(2.5)
-    on_plane = np.isclose(iris.positions[:, 2], IRIS_Z_MM)
-    assert iris.positions[~on_plane, 2] == pytest.approx(LIMBUS_Z_MM, abs=0.1)
-    np.testing.assert_allclose(r[~on_plane], LIMBUS_RADIUS_MM)
+    r, z = np.hypot(*iris.positions[:, :2].T), iris.positions[:, 2]
+    on_plane, behind = np.isclose(z, IRIS_Z_MM), z < IRIS_Z_MM - 0.1
+    wall = ~on_plane & ~behind
+    assert r[on_plane].min() == pytest.approx(2.5)
+    assert z[wall] == pytest.approx(LIMBUS_Z_MM, abs=0.1)
+    np.testing.assert_allclose(r[wall], LIMBUS_RADIUS_MM)
+    assert r[behind].max() > 4.0  # hides what lies behind an 8 mm pupil
+    assert iris.uv is not None
+    np.testing.assert_array_equal(iris.uv[behind], 0.5)  # the maps' black
     assert ((face_normals(iris) * corner_normals(iris)).sum(axis=1) > 0.6).all()
     assert (face_normals(iris)[:, 2] > -1e-9).all()
 
@@ -80,16 +84,21 @@ def test_tissue_stretches_with_the_pupil_and_keeps_its_place_on_the_map() -> Non
     assert edge == pytest.approx(2.0)
 
 
+def tissue_of(iris: Mesh) -> np.ndarray:
+    r, z = np.hypot(*iris.positions[:, :2].T), iris.positions[:, 2]
+    return (r > 1.9) & (r < 5.8) & (z > IRIS_Z_MM - 0.25)
+
+
 def test_relief_rises_around_the_iris_plane_where_the_map_says_so() -> None:
     n = 64
     ramp = np.broadcast_to(np.linspace(0.0, 0.4, n, dtype=np.float32)[None, :], (n, n))
     left, right = (
         iris_relief(ramp.astype(float), pupil_mm=4.0, mirror=mirror) for mirror in (False, True)
     )
-    tissue = left.positions[np.hypot(*left.positions[:, :2].T) < 5.8]
+    tissue = left.positions[tissue_of(left)]
     fitted = np.polyfit(tissue[:, 0], tissue[:, 2] - IRIS_Z_MM, 1)
     np.testing.assert_allclose(fitted, [0.4 / 12, 0.0], atol=2e-3)
-    tissue = right.positions[np.hypot(*right.positions[:, :2].T) < 5.8]
+    tissue = right.positions[tissue_of(right)]
     assert np.polyfit(tissue[:, 0], tissue[:, 2], 1)[0] == pytest.approx(-0.4 / 12, abs=2e-3)
 
 
