@@ -74,6 +74,8 @@ def test_an_unknown_command_is_one_line(capsys: pytest.CaptureFixture[str]) -> N
         (("still", "--iris", "purple"), '"purple" is no iris; write a seed, a colour'),
         (("still", "--out", "eye.jpg"), 'eye.jpg: unknown kind of picture ".jpg"'),
         (("still", "--environment", "none.exr"), "none.exr: No such file or directory"),
+        (("export-scene", "--format", "obj"), "argument --format: invalid choice: 'obj'"),
+        (("export-scene", "--left", "best"), "argument --left: invalid choice: 'best'"),
         (("still", "--environment-turn", "9"), "only a picture has one; give --environment FILE"),
         (("still", "--environment", "x.exr", "--sun", "0", "9"), "x.exr brings its own sun"),
         (("render", "--only", "8"), 'unknown clip "8"; the study has practice, 1, 2, 3'),
@@ -96,6 +98,19 @@ def test_an_error_is_one_clear_line(
     assert said.startswith(f"ocularist {arguments[0]}: ")
     assert words in said
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", ["check", "render"])
+def test_a_study_whose_picture_cannot_light_a_scene_is_told_before_any_work(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (ROOT / "study/design/definitions/thesis.toml").read_text(encoding="utf-8")
+    scene = 'environment = "park"\nsun_azimuth_deg = -15.0\nsun_elevation_deg = 42.0'
+    assert scene in text
+    (tmp_path / "study.toml").write_text(text.replace(scene, 'environment = "lobby.exr"'))
+    (tmp_path / "lobby.exr").write_bytes(b"no picture")
+    said = fails_with(capsys, command, str(tmp_path / "study.toml"))
+    assert said.endswith("lobby.exr: not an OpenEXR file, whatever its name says")
 
 
 def test_every_fault_of_a_study_file_is_told(

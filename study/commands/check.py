@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
 from study.commands.options import add_study
+from study.commands.pictures import check_pictures
 
 if TYPE_CHECKING:
     from study.design.definition import StudyDefinition
@@ -30,6 +31,7 @@ def run(options: argparse.Namespace) -> int:
     from study.design.definition import read_definition
 
     definition = read_definition(options.study)
+    check_pictures(definition)
     for line in [*summary(definition), "", *audit_lines(definition)]:
         print(line)
     return 0

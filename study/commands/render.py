@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from study.commands.errors import CommandError
 from study.commands.options import add_study, count, settings_of, size
+from study.commands.pictures import check_pictures
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
@@ -63,6 +64,7 @@ def run(options: argparse.Namespace) -> int:
     from study.design.definition import read_definition
 
     definition = read_definition(options.study)
+    check_pictures(definition)
     specs = wanted(definition, only=options.only, sizes=options.size, fps=options.fps)
     folder = options.out or settings_of(options).media_folder
     with ClipBar(len(specs)) as bar:
