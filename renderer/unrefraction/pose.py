@@ -26,7 +26,7 @@ VISIBLE_LIMBUS_MM: Final = 5.76  # where half of the light is sclera's, as surfa
 RUFF_MM: Final = 0.035  # how far outside of the pupil's rim its dark lining begins to show
 MODEL_LIMBUS_MM: Final = 11.7  # the visible iris's width that the model eye stands for
 TELECENTRIC_MM: Final = 1e5  # far enough to be parallel
-CONTOUR: Final = 72
+CONTOUR: Final = 48
 
 # Spread of what the edges leave open, in the units of the parameters (see _Parameters).
 TILT_DEG: Final = 12.0  # people look into a camera that is asked to photograph their eye
@@ -88,7 +88,7 @@ class Pose:
         camera = self.camera_mm
         s = 0.85 * x_mm + 0.3 * self._turn()[2][:2]
         step = 0.01
-        for _ in range(6):
+        for _ in range(4):
             error = x_mm - seen_through(s, camera)
             jx = (seen_through(s + [step, 0.0], camera) - x_mm + error) / step
             jy = (seen_through(s + [0.0, step], camera) - x_mm + error) / step
