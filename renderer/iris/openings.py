@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from renderer.iris.angles import angle_between
@@ -10,14 +12,16 @@ from renderer.iris.plane import HALF_SIZE_MM, Plane
 from renderer.textures.noise import Field, noise_grid
 from renderer.textures.sizes import smoothstep
 
+BEND_MM: Final = 0.05  # standard deviation by which a crypt's outline strays from a lens
+
 
 def crypt_mask(plane: Plane, crypts: Crypts, seed: int) -> Field:
     """Return the depth of crypts at every texel, 0 outside, with soft sides."""
     mask = np.zeros_like(plane.radius_mm)
-    bend_x = 0.05 * noise_grid(plane.size_px, plane.size_px, cells=(44.0, 44.0), seed=seed + 1)
-    bend_y = 0.05 * noise_grid(plane.size_px, plane.size_px, cells=(44.0, 44.0), seed=seed + 2)
+    bend_x = BEND_MM * noise_grid(plane.size_px, plane.size_px, cells=(44.0, 44.0), seed=seed + 1)
+    bend_y = BEND_MM * noise_grid(plane.size_px, plane.size_px, cells=(44.0, 44.0), seed=seed + 2)
     for i in range(crypts.angle.size):
-        reach = crypts.half_length_mm[i] * 1.3
+        reach = reach_mm(crypts.half_width_mm[i], crypts.half_length_mm[i])
         x = crypts.radius_mm[i] * np.cos(crypts.angle[i])
         y = crypts.radius_mm[i] * np.sin(crypts.angle[i])
         texels = [
@@ -33,9 +37,14 @@ def crypt_mask(plane: Plane, crypts: Crypts, seed: int) -> Field:
         offset = angle_between(plane.angle[window], crypts.angle[i]) * radius
         offset = offset + bend_x[window]
         lens = crypts.half_width_mm[i] * np.maximum(1.0 - (t / np.float32(1.25)) ** 2, 0.0)
-        depth = smoothstep(-0.1, 0.8, (lens - np.abs(offset)) / crypts.half_width_mm[i])
+        depth = smoothstep(0.0, 0.8, (lens - np.abs(offset)) / crypts.half_width_mm[i])
         mask[window] = np.maximum(mask[window], crypts.depth[i] * depth)
     return mask
+
+
+def reach_mm(half_width_mm: float, half_length_mm: float) -> float:
+    """Return how far from its centre a crypt may be seen: its lens, and what bends it."""
+    return max(1.25 * half_length_mm, half_width_mm) + 3.0 * BEND_MM
 
 
 def furrow_mask(plane: Plane, layout: IrisLayout) -> Field:

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from renderer.iris import openings
 from renderer.iris.layout import PUPIL_RADIUS_MM, plan_iris
 from renderer.iris.maps import bake_iris
 from renderer.iris.pigment import FAMILIES
-from renderer.iris.plane import HALF_SIZE_MM
+from renderer.iris.plane import HALF_SIZE_MM, iris_plane
 from renderer.iris.statistics import circle, measure_strands, to_lab
 from renderer.textures.sizes import unpack_albedo
 
@@ -95,6 +96,17 @@ def test_crypts_are_as_large_as_real_ones(seed: int) -> None:
     assert area_mm2.min() > 0.0149
     assert area_mm2.max() < 0.301
     assert 10 <= area_mm2.size <= 50
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_crypt_is_cut_off(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    layout = plan_iris(seed, freckle_rate=1.0, crypt_rate=1.0)
+    plane = iris_plane(layout, 256)
+    mask = openings.crypt_mask(plane, layout.crypts, seed)
+    monkeypatch.setattr(openings, "reach_mm", lambda *_sizes: 12.0)
+    everywhere = openings.crypt_mask(plane, layout.crypts, seed)
+    np.testing.assert_allclose(mask, everywhere, atol=0.01)
+    assert mask.max() > 0.5
 
 
 def test_crypts_are_seen_as_dark_openings() -> None:
