@@ -54,7 +54,7 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     hump = room * np.exp(-(((x - middle) / BUMP_MM[1]) ** 2) - ((b - 0.47) / 0.30) ** 2)
     plica = room * np.exp(-(((crescent - PLICA_MM) / 0.42) ** 2)) * np.sin(np.pi * b)
     sag = 0.75 * np.sin(np.pi * b) * _ease((x - MEDIAL_MM[0]) / 1.5)
-    height = z - sag + 1.25 * hump + 0.35 * plica + _lumps(x, y) * np.sqrt(hump)
+    height = z - sag + 1.25 * hump + 0.45 * plica + _lumps(x, y) * np.sqrt(hump)
     globe = on_globe(sheet.points_mm[..., :2], pose)
     near = _ease((crescent + 12.6) / 2.0)
     under = _ease((crescent + 8.8) / 0.6)
@@ -86,7 +86,7 @@ def _lumps(x: Floats, y: Floats) -> Floats:
     """Return the caruncle's glands in mm: lobes of a millimetre with finer grains on them."""
     lobes = np.sin(5.1 * x + 2.3 * y + 0.4) * np.sin(4.7 * y - 2.9 * x)
     grains = np.sin(11.3 * x - 4.1 * y) * np.sin(9.7 * y + 5.3 * x + 1.0)
-    return np.asarray(0.11 * lobes + 0.045 * grains)
+    return np.asarray(0.15 * lobes + 0.06 * grains)
 
 
 def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:

@@ -260,7 +260,9 @@ def _patch(lid: lid_fit.LidPatch, eye: int) -> SkinPart:
         triangles = triangles[:, ::-1]
     across = lid.across_mm
     edge = across[:, lid.rim_row][:, None]
-    margin = 1.0 - _ramp(across, edge * 0.75, edge * 1.15)
+    # Shut lids show nothing of their margins.
+    shown = 1.0 - 0.35 * lid.pose.blink
+    margin = 1.0 - _ramp(across, edge * 0.75 * shown, edge * 1.15 * shown)
     wet = 1.0 - _ramp(across, edge * 0.08, edge * 0.38)
     beyond = across - edge
     total = beyond[:, -1:]

@@ -19,7 +19,7 @@ from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim, rim_shares, smooth_step
 from renderer.head.lid_skin import Columns, lower_skin, upper_skin
 
-TUCK_MM: Final = 3.5  # from the inner edge back to the patch's innermost ring
+TUCK_MM: Final = 1.6  # from the inner edge back to the patch's innermost ring
 MARGIN_MM: Final = 1.75  # lid thickness at the rim
 MARGIN_TURN: Final = (0.5, 0.1)  # of the margin against the globe's normal, lower and upper lid
 MEETING_MM: Final = 3.5  # lids that are nearer to each other turn their margins face to face
@@ -28,6 +28,7 @@ ENDING: Final = (0.0, 0.9, 1.8, 2.7)  # of the last rings, in mm beyond the outl
 SETTLED: Final = (0.25, 0.6, 0.9, 1.0, 1.0, 1.0, 1.0)  # how far the last rings obey the face
 AROUND: Final = 176
 ALONG: Final = 48
+EDGE_ROW: Final = 3  # of the lids' inner edge
 # Where the face gives way for the canthi: place, height of the skin there, reach, all in mm.
 CANTHUS_PITS: Final = (((-17.4, -2.2), 8.0, 7.5), ((13.4, 0.5), 5.6, 7.0))
 
@@ -38,7 +39,8 @@ class LidPatch:
 
     Row 0 lies inside the globe, the last row under the face's skin. ``rim_row`` is the row of the
     lid's outer edge, where lashes grow. ``is_upper`` (around,) runs from 0 on the lower lid to 1
-    on the upper; ``across_mm`` (around, along) is the way along the skin from the inner edge.
+    on the upper; ``across_mm`` (around, along) is the way along the skin from the inner edge,
+    EDGE_ROW.
     """
 
     points_mm: Floats
@@ -80,7 +82,9 @@ def fit_lids(socket: Socket, pose: LidPose = STRAIGHT) -> LidPatch:
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
     across = np.concatenate([np.zeros((AROUND, 1)), np.cumsum(steps, axis=1)], axis=1)
     rim_row = int(np.argmin(np.abs(places - rim_control)))
-    return LidPatch(points, upper_share(), across - across[:, 2:3], rim_row, pose)
+    return LidPatch(
+        points, upper_share(), across - across[:, EDGE_ROW : EDGE_ROW + 1], rim_row, pose
+    )
 
 
 def inner_edge(pose: LidPose) -> Floats:
@@ -152,7 +156,7 @@ def _margin_rows(inner: Floats, outward: Floats, *, canthus: Floats) -> list[Flo
     """Return the rings from inside the globe over the margin to the lid's outer edge."""
     radial = inner / np.linalg.norm(inner, axis=1, keepdims=True)
     margin = _margin_direction(inner, radial, outward=outward, canthus=canthus)
-    thick = MARGIN_MM * (1 - 0.45 * canthus) * (1.0 - 0.1 * upper_share())
+    thick = MARGIN_MM * (1 - 0.55 * canthus) * (1.0 - 0.1 * upper_share())
     edge = inner + margin * thick[:, None]
     # The first rings run straight back into the globe, or at the canthi under the conjunctiva: no
     # light shines between lid and globe, and from the front nothing of them shows.

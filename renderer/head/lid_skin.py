@@ -23,6 +23,7 @@ LEAST_PLATFORM_MM: Final = 0.9  # of skin below the crease that stays in sight i
 FOLD_MM: Final = 1.9  # how far the upper lid's fold stands out over the crease
 FOLD_FADES_MM: Final = 4.5  # of the lid's way down, over which the fold is drawn smooth
 FULLNESS_MM: Final = 1.2  # of the soft tissue between the fold and the brow
+TEMPLE_SLOPE: Final = 0.55
 BRIDGE_SAG_MM: Final = 0.5  # of the skin from the lower lid straight to the cheek
 OUTER_SHARES: Final = (0.12, 0.27, 0.44, 0.61, 0.77, 0.9)  # rings between the fold and the outline
 
@@ -59,10 +60,12 @@ class Columns:
         start = on_hull(self.edge[:, :2], self.pose, lift=thin)
         globe = on_hull(xy, self.pose, lift=thick)
         offset = (self.edge[:, 2] - start) * np.exp(-distance / 1.5)
-        level = self.edge[:, 2]
+        # At the outer corner the face falls away to the temple.
+        temple = smooth_step((self.edge[:, 0] - 4.0) / 7.0)
+        level = self.edge[:, 2] - temple * TEMPLE_SLOPE * np.maximum(distance - 1.0, 0.0)
         # Beside the globe the hull is a wall: skin does not go down there, least towards the nose.
         nose = smooth_step((-self.edge[:, 0] - 3.0) / 7.0)
-        floor = level - (1.0 - 0.8 * nose) - (0.45 - 0.40 * nose) * distance
+        floor = level - (1.0 - 0.8 * nose) - (0.45 * (1 - temple) - 0.40 * nose) * distance
         globe = soft_max(globe + offset, floor, 2.0 - 1.2 * nose)
         return xy, globe + self.canthus * (level - globe)
 

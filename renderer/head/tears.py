@@ -26,7 +26,7 @@ from renderer.program import Program
 LOWER_MM: Final = (0.30, 0.26)
 UPPER_MM: Final = (0.16, 0.14)
 ENDS_MM: Final = ((-10.6, -9.0), (11.4, 10.2))  # along x: where the line runs dry, where it is full
-LIFT_MM: Final = 0.015  # off globe and margin, so that surfaces do not fight
+LIFT_MM: Final = 0.02  # off globe and margin, so that surfaces do not fight
 ALONG: Final = 160
 ACROSS: Final = 8
 

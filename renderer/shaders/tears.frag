@@ -21,8 +21,8 @@ const float EDGE_SHADE = 0.16;       // what the upper edge takes away
 // Slopes of the water, root mean square. Across, the hollow is smooth; along the lid lashes, oil
 // and mucus ripple it, which draws the sun's image out into a line: a sharp and a wide part.
 const float ACROSS = 0.05;
-const vec2 ALONG = vec2(0.10, 0.42);
-const vec2 SHARE = vec2(0.45, 0.55);
+const vec2 ALONG = vec2(0.04, 0.42);
+const vec2 SHARE = vec2(0.6, 0.4);
 // The harmonics keep a ninth of a real sky's contrast: bright clouds and the sun's halo count more.
 const float SKY_CONTRAST = 1.8;
 

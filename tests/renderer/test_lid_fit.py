@@ -9,6 +9,7 @@ from renderer.eye.lids import LidRims
 from renderer.head import lid_rims
 from renderer.head.caruncle import caruncle, outer_membrane
 from renderer.head.face_mesh import face_mesh, to_patch, to_world
+from renderer.head.lid_fit import EDGE_ROW
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_shell import height_over_globe
 
@@ -53,8 +54,8 @@ def test_the_fissure_is_an_almond() -> None:
 
 def test_the_upper_margin_hides_and_the_lower_shows_a_thin_edge_from_the_front() -> None:
     patch = face_mesh().lids[1]
-    middle = np.abs(patch.points_mm[:, 2, 0]) < 5.0
-    rise = patch.points_mm[:, patch.rim_row, 1] - patch.points_mm[:, 2, 1]
+    middle = np.abs(patch.points_mm[:, EDGE_ROW, 0]) < 5.0
+    rise = patch.points_mm[:, patch.rim_row, 1] - patch.points_mm[:, EDGE_ROW, 1]
     assert np.abs(rise[middle & (patch.is_upper > 0.9)]).max() < 0.6
     assert -1.1 < rise[middle & (patch.is_upper < 0.1)].mean() < -0.3
 
@@ -84,14 +85,14 @@ def test_no_light_passes_between_lid_and_globe(eye: int) -> None:
 
 def test_lids_are_about_two_millimetres_thick() -> None:
     patch = face_mesh().lids[1]
-    middle = (np.abs(patch.points_mm[:, 2, 0]) < 7.0) & (patch.is_upper > 0.9)
+    middle = (np.abs(patch.points_mm[:, EDGE_ROW, 0]) < 7.0) & (patch.is_upper > 0.9)
     thickness = patch.across_mm[middle, patch.rim_row]
     assert 1.3 < thickness.mean() < 2.6
 
 
 def test_the_upper_lid_has_a_crease() -> None:
     patch = face_mesh().lids[1]
-    column = int(np.argmin(np.abs(patch.points_mm[:, 2, 0]) + 9 * (patch.is_upper < 0.5)))
+    column = int(np.argmin(np.abs(patch.points_mm[:, EDGE_ROW, 0]) + 9 * (patch.is_upper < 0.5)))
     profile = patch.points_mm[column, patch.rim_row :]
     near = profile[:, 1] < profile[0, 1] + 6.0
     # Going up, depth falls along the lid to the crease, then rises over the fold.

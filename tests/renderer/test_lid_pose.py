@@ -37,7 +37,7 @@ def height_at(x: float, pose: LidPose) -> tuple[float, float]:
 
 def column(patch: lid_fit.LidPatch, x: float) -> np.ndarray:
     """Return the upper lid's profile (along, 3) whose inner edge is nearest to x."""
-    away = np.abs(patch.points_mm[:, 2, 0] - x) + 99.0 * (patch.is_upper < 0.5)
+    away = np.abs(patch.points_mm[:, lid_fit.EDGE_ROW, 0] - x) + 99.0 * (patch.is_upper < 0.5)
     return np.asarray(patch.points_mm[int(np.argmin(away))])
 
 
@@ -110,7 +110,7 @@ def test_the_turned_cornea_never_cuts_a_lid(pose: LidPose) -> None:
     assert height_over_globe(patch.points_mm[:, 3:], pose).min() > 0.0
     assert height_over_globe(patch.points_mm[:, patch.rim_row :], pose).min() > 0.5
     # Towards the back the patch dives into the globe wherever the rim lies on it.
-    edge_on_globe = height_over_globe(patch.points_mm[:, 2], pose) < 0.3
+    edge_on_globe = height_over_globe(patch.points_mm[:, lid_fit.EDGE_ROW], pose) < 0.3
     assert height_over_globe(patch.points_mm[edge_on_globe, 0], pose).max() < 0.0
 
 

@@ -1,0 +1,101 @@
+"""The tear line: where it stands, which way its hollow faces, and that it shines and follows."""
+
+from __future__ import annotations
+
+import moderngl
+import numpy as np
+import pytest
+
+from renderer.head.face_mesh import face_mesh
+from renderer.head.lid_fit import fit_lids
+from renderer.head.lid_pose import STRAIGHT, LidPose
+from renderer.head.lid_shell import height_over_globe
+from renderer.head.tears import ACROSS, TearLine, TearStrip, tear_strip
+from renderer.light import Light, Sky
+from renderer.program import build_program
+
+POSES = (STRAIGHT, LidPose(20.0, -25.0), LidPose(-20.0, 15.0, 0.5))
+
+
+def strip(pose: LidPose, *, is_upper: bool = False) -> TearStrip:
+    return tear_strip(fit_lids(face_mesh().sockets[1], pose), is_upper=is_upper)
+
+
+@pytest.mark.parametrize("pose", POSES)
+@pytest.mark.parametrize("is_upper", [True, False])
+def test_the_line_lies_between_globe_and_margin(pose: LidPose, is_upper: bool) -> None:
+    tears = strip(pose, is_upper=is_upper)
+    wet = tears.amount > 0.5
+    over = height_over_globe(tears.points_mm[wet], pose)
+    assert over.min() > -0.005  # where the water ends it touches the globe
+    on_globe = tears.across[wet] == 0.0
+    assert over[on_globe].max() < 0.12
+    assert (over[tears.across[wet] == 1.0] > over[on_globe].max()).mean() > 0.8
+
+
+def test_the_lower_line_is_as_high_as_a_tear_meniscus() -> None:
+    tears = strip(STRAIGHT)
+    rows = tears.points_mm.reshape(-1, ACROSS, 3)
+    middle = np.abs(rows[:, 0, 0]) < 6.0
+    height = np.linalg.norm(rows[middle, 0] - rows[middle, -1], axis=1)
+    # Reference: 0.15 to 0.4 mm, here from the globe to the lid.
+    assert height.min() > 0.2
+    assert height.max() < 0.5
+
+
+def test_the_hollow_turns_from_the_globes_normal_to_the_lids() -> None:
+    tears = strip(STRAIGHT)
+    normals = tears.normals.reshape(-1, ACROSS, 3)
+    middle = np.abs(tears.points_mm.reshape(-1, ACROSS, 3)[:, 0, 0]) < 6.0
+    first, last = normals[middle, 0], normals[middle, -1]
+    assert (first[:, 2] > 0.5).all()
+    turn = np.degrees(np.arccos(np.clip((first * last).sum(axis=1), -1, 1)))
+    assert 30.0 < turn.mean() < 110.0
+    assert (last[:, 1] > first[:, 1]).all()  # the lid's side looks up to the sky
+    np.testing.assert_allclose(np.linalg.norm(tears.tangents, axis=1), 1.0)
+
+
+def test_the_line_runs_dry_before_the_canthi() -> None:
+    tears = strip(STRAIGHT)
+    x = tears.points_mm[:, 0]
+    assert tears.amount[x < -10.8].max(initial=0.0) == 0.0
+    assert tears.amount[x > 11.6].max(initial=0.0) == 0.0
+    assert tears.amount[np.abs(x) < 7.0].min() == 1.0
+
+
+def test_sun_and_sky_shine_on_it_and_little_is_taken_away(gl: moderngl.Context) -> None:
+    program = build_program(gl, "tears.vert", fragment="tears.frag")
+    line = TearLine(gl, program, fit_lids(face_mesh().sockets[1], STRAIGHT), eye=1)
+    depth = gl.depth_texture((1, 1), data=np.ones(1, np.float32).tobytes())
+    depth.compare_func = ""
+    matrix = np.eye(4)
+    matrix[:3] = np.array([[1 / 6, 0, 0, -31 / 6], [0, 1 / 6, 0, 5 / 6], [0, 0, -1 / 40, 0]])
+    pictures = []
+    for irradiance in (0.0, 2.4):
+        harmonics = np.zeros((9, 3))
+        harmonics[0] = 0.5 / 0.282095
+        direction = np.array([0.0, 0.6, 0.8])
+        light = Light(
+            Sky(direction, np.full(3, irradiance), harmonics), depth, np.eye(4, dtype=np.float32)
+        )
+        target = gl.framebuffer(
+            [gl.texture((96, 96), 4, dtype="f4")], gl.depth_renderbuffer((96, 96))
+        )
+        target.use()
+        target.clear(0.4, 0.4, 0.4, 1.0)
+        line.draw(
+            u_view_matrix=np.eye(4),
+            u_projection=matrix,
+            u_camera_mm=np.array([31.0, 0.0, 170.0]),
+            u_mm_per_px=0.1,
+            **light.uniforms(),
+        )
+        pictures.append(np.frombuffer(target.read(components=4, dtype="f4"), np.float32))
+        target.release()
+    sky, sun = (picture.reshape(96, 96, 4)[..., 0] for picture in pictures)
+    assert np.isfinite(sun).all()
+    changed = np.abs(sky - 0.4) > 1e-4
+    assert 0.005 < changed.mean() < 0.2
+    assert sky.min() > 0.3
+    assert (sun - sky).max() > 0.1  # a glint
+    assert pictures[0].reshape(-1, 4)[:, 3].min() > 0.999
