@@ -24,6 +24,7 @@ COMMANDS: Final = (
     "still",
     "export-scene",
     "bench",
+    "certify",
     "gallery",
     "iris",
     "serve",

@@ -20,8 +20,9 @@ from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.anatomy import shader_constants
 from renderer.eye.calibration import calibrated_gain, open_lids
+from renderer.eye.flat_iris import flat_iris
 from renderer.eye.lids import LidRims
-from renderer.eye.maps import iris_values, plane_albedo, sclera_values, tissue_constants
+from renderer.eye.maps import iris_values, sclera_values, tissue_constants
 from renderer.eye.silhouette import Silhouette, detail_mesh, hull_mesh, vertex_array
 from renderer.eye.subsurface import DEPTH_MARGIN, MAX_DEPTH_MM
 from renderer.eye.sunlight import (
@@ -148,7 +149,10 @@ class Eyes:
         turn = gaze_rotation(*gaze_deg(spec, eye))
         is_gathered = detail.caustics in {"high", "ultra"} and spec.caustic_pattern == "computed"
         mirror = 1.0 if eye == 0 else -1.0
-        albedo = plane_albedo(iris_of(spec), spec.pupil_mm, mirror=mirror, size_px=CHAMBER_PX)
+        gain = APPARENT_GAIN if is_gathered else 1.0
+        map_px = min(CHAMBER_PX, int(detail.setting("texture", "iris_map_px")))
+        iris = iris_of(spec).maps(map_px)
+        albedo = gain * flat_iris(iris, spec.pupil_mm, size_px=CHAMBER_PX, mirror=mirror)
         placed = {
             **light.uniforms(),
             "u_lid_rims": rims_texture(self._gl, rims),
@@ -170,7 +174,7 @@ class Eyes:
             ),
             "u_shade_map": shade_map(self._gl, placed),
             "u_mirror": mirror,
-            "u_iris_gain": np.full(3, APPARENT_GAIN if is_gathered else 1.0),
+            "u_iris_gain": np.full(3, gain),
         }
         values["u_relief_shade"] = relief_shade_map(
             self._gl, values, constants=constants, size_px=RELIEF_SHADE_PX.get(detail.texture, 0)

@@ -71,23 +71,6 @@ def _tissue(size_px: int) -> npt.NDArray[np.bool_]:
     return np.asarray(inside | (size_px == 1))
 
 
-def plane_albedo(source: Iris, pupil_mm: float, *, mirror: float, size_px: int) -> Array:
-    """Return the iris as it lies in the eye, (size_px, size_px, 3): what lights the cornea within.
-
-    ``mirror`` -1 flips it as the right eye's is. The pupil and what lies beyond the root are black.
-    """
-    axis = ((np.arange(size_px) + 0.5) / size_px * 2 - 1) * MAP_EDGE_MM
-    x, y = np.meshgrid(axis, axis)
-    radius = np.maximum(np.hypot(x, y), 1e-6)
-    stretch = (IRIS_RADIUS_MM - PUPIL_RADIUS_MM) / (IRIS_RADIUS_MM - 0.5 * pupil_mm)
-    mapped = (PUPIL_RADIUS_MM + (radius - 0.5 * pupil_mm) * stretch) / radius
-    albedo = source.maps(size_px).albedo
-    place = [(a * mapped / MAP_EDGE_MM + 1) * size_px / 2 for a in (mirror * x, y)]
-    column, row = (np.clip(a.astype(int), 0, size_px - 1) for a in place)
-    tissue = (radius > 0.5 * pupil_mm) & (radius < IRIS_RADIUS_MM)
-    return np.where(tissue[..., None], albedo[row, column], 0.0).astype(np.float64)
-
-
 def sclera_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail) -> Values:
     """Return the sclera's textures and mean colour for a LoD."""
     diffuse_px = int(detail.setting("sclera", "diffuse_map_px"))

@@ -8,14 +8,16 @@ from scipy import ndimage
 
 from renderer.eye.anatomy import (
     APEX_MM,
+    CORNEA_ASPHERICITY,
     CORNEA_IOR,
+    CORNEA_RADIUS_MM,
     LIMBUS_HEIGHT_RATIO,
     LIMBUS_INSET_MM,
     LIMBUS_RADIUS_MM,
     SUN_ANGULAR_RADIUS_DEG,
 )
 from renderer.eye.caustics import MAP_EDGE_MM, Front, caustic_map, entering_rays, lit_flux_mm2
-from renderer.eye.optics import conic_normal, corneal_sag
+from renderer.eye.optics import corneal_sag
 
 IRIS_RADIUS_MM = 5.6  # the disc of the reference's table
 
@@ -24,8 +26,13 @@ def hard_limbus(entry_mm: np.ndarray) -> np.ndarray:
     return np.where(np.hypot(entry_mm[..., 0], entry_mm[..., 1]) < LIMBUS_RADIUS_MM, 1.0, 0.0)
 
 
+def conic(r_mm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    sag = corneal_sag(r_mm)
+    return APEX_MM - sag, -r_mm / (CORNEA_RADIUS_MM - CORNEA_ASPHERICITY * sag)
+
+
 # Baker's cornea alone, cut off at a round limbus: what the reference's values were traced with.
-REFERENCE = Front(lambda r: APEX_MM - corneal_sag(r), conic_normal, hard_limbus)
+REFERENCE = Front(conic, hard_limbus)
 
 
 def sun_at(angle_deg: float) -> np.ndarray:
