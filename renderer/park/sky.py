@@ -19,6 +19,10 @@ TURBIDITY: Final = 3.0  # a clear, slightly hazy day
 # Thin haze lifts a real sky above Preetham's clear one; it also softens the light as a portrait
 # photographer would wish.
 SKY_GAIN: Final = 1.4
+# Light that haze scatters by a few degrees, which Preetham's sky is too flat to hold: two lobes
+# exp(-angle / width), each with its share of the disc's irradiance. A few per cent of the beam come
+# from around the disc on a hazy day; the shares and widths are chosen by eye within that.
+AUREOLE: Final = ((0.020, 1.2), (0.030, 5.0))  # share, width in degrees
 LOWEST_SUN_DEG: Final = 4.0  # for the sun's colour: below, its light is too red for a portrait
 # Preetham, Shirley and Smits 1999, appendix A.2: slope and offset in T, rows A to E, columns
 # Y, x, y.
@@ -88,7 +92,7 @@ class ClearSky:
         cos_theta = np.clip(directions[:, 1], 0.01, 1.0)[:, None]
         cos_gamma = np.clip(directions @ self.sun_direction, -1.0, 1.0)[:, None]
         Yxy = self.zenith * _perez(self.perez, cos_theta, cos_gamma)
-        return rgb_from_yxy(Yxy) * self.scale
+        return rgb_from_yxy(Yxy) * self.scale + aureole(np.arccos(cos_gamma)) * self.sun_irradiance
 
     def uniforms(self) -> dict[str, Any]:
         """Return the sky's uniforms of ``shaders/environment.glsl`` by name."""
@@ -97,6 +101,7 @@ class ClearSky:
             "u_environment_sun_irradiance": self.sun_irradiance,
             "u_environment_sky_irradiance": self.sky_irradiance,
             "u_perez": self.perez,
+            "u_aureole": aureole_lobes(),
             "u_zenith": np.append(self.zenith[:1] * self.scale, self.zenith[1:]),
         }
 
@@ -117,13 +122,26 @@ def clear_sky(azimuth_deg: float, elevation_deg: float) -> ClearSky:
         / _perez(perez, np.ones((1, 1)), np.array([[sun[1]]])).ravel()
     )
     colour = _sun_colour(elevation)
-    unscaled = ClearSky(sun, perez, zenith, 1.0, colour, np.zeros(3))
-    on_sun, on_ground = _irradiances(unscaled)
+    on_sun, on_ground = _irradiances(ClearSky(sun, perez, zenith, 1.0, np.zeros(3), np.zeros(3)))
     # Clear-day daylight: the sun gives about 100 klx, so 1 kcd/m2 is 1/38 of the white reference.
     scale = SKY_GAIN / 38.0
     sun_luminance = max(math.pi - float(on_sun @ LUMINANCE) * scale, 0.3 * math.pi)
-    irradiance = colour * sun_luminance / float(colour @ LUMINANCE)
-    return ClearSky(sun, perez, zenith, scale, irradiance, on_ground * scale)
+    disc = 1.0 / (1.0 + sum(share for share, _ in AUREOLE))  # what the haze leaves of the beam
+    irradiance = disc * colour * sun_luminance / float(colour @ LUMINANCE)
+    beside = (1.0 / disc - 1.0) * max(float(sun[1]), 0.0) * irradiance
+    return ClearSky(sun, perez, zenith, scale, irradiance, on_ground * scale + beside)
+
+
+def aureole_lobes() -> Array:
+    """Return the aureole's lobes (2, 2): radiance at the sun per irradiance of it, width in rad."""
+    width = np.radians([degrees for _, degrees in AUREOLE])
+    # The integral of exp(-a / w) over small angles is 2 pi w^2.
+    return np.stack([[s for s, _ in AUREOLE] / (2 * math.pi * width**2), width], axis=1)
+
+
+def aureole(angle: Array) -> Array:
+    """Return the haze's radiance at angles in rad from the sun, per irradiance of the sun."""
+    return np.asarray(sum(peak * np.exp(-angle / width) for peak, width in aureole_lobes()))
 
 
 def rgb_from_yxy(Yxy: Array) -> Array:

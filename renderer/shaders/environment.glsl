@@ -6,6 +6,7 @@ uniform vec3 u_environment_sun;              // unit, towards the sun
 uniform vec3 u_environment_sun_irradiance;   // on a surface that faces the sun
 uniform vec3 u_environment_sky_irradiance;   // of the clear sky on level ground
 uniform vec3 u_perez[5];                     // A to E for Y, x, y
+uniform vec2 u_aureole[2];                   // per lobe: radiance per irradiance of the sun, width
 uniform vec3 u_zenith;                       // Y, x, y that the Perez function multiplies
 uniform sampler2D u_noise;                   // four tiling fields, each uniform in 0..1
 uniform sampler2D u_skyline_albedo;          // square root of albedo, coverage
@@ -22,8 +23,11 @@ vec3 clear_sky(vec3 d) {
     vec3 Yxy = u_zenith * (1.0 + u_perez[0] * exp(u_perez[1] / cos_theta))
              * (1.0 + u_perez[2] * exp(u_perez[3] * gamma) + u_perez[4] * cos_gamma * cos_gamma);
     vec3 XYZ = Yxy.x * vec3(Yxy.y, Yxy.z, 1.0 - Yxy.y - Yxy.z) / Yxy.z;
-    return max(mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259,
-                    -0.4985314, 0.0415560, 1.0572252) * XYZ, vec3(0.0));
+    vec3 sky = max(mat3(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259,
+                        -0.4985314, 0.0415560, 1.0572252) * XYZ, vec3(0.0));
+    float haze = u_aureole[0].x * exp(-gamma / u_aureole[0].y)
+               + u_aureole[1].x * exp(-gamma / u_aureole[1].y);
+    return sky + haze * u_environment_sun_irradiance;
 }
 
 float noise_lod(float footprint) { return log2(max(footprint * 512.0, 1.0)); }
@@ -52,7 +56,7 @@ vec3 clouds_over(vec3 sky, vec3 d) {
     vec3 lit = u_environment_sun_irradiance * mix(1.25, 0.40, towards_sun * depth) * silver;
     vec3 cloud = (lit + 0.8 * u_environment_sky_irradiance) / PI_ENVIRONMENT;
     // No cloud stands before the sun itself: its light is a separate, unshadowed term.
-    float share = depth * 0.92 * smoothstep(0.02, 0.16, d.y) * (1.0 - smoothstep(0.93, 0.985, facing));
+    float share = depth * 0.92 * smoothstep(0.02, 0.16, d.y) * (1.0 - smoothstep(0.972, 0.996, facing));
     return mix(sky, cloud, share);
 }
 

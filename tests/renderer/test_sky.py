@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from renderer.park.sky import LUMINANCE, clear_sky, rgb_from_yxy
+from renderer.park.sky import LUMINANCE, aureole, clear_sky, rgb_from_yxy
 
 
 @pytest.mark.parametrize("elevation_deg", [10.0, 40.0, 75.0])
@@ -33,6 +33,17 @@ def test_the_sky_opposite_the_sun_is_blue_and_brightest_around_the_sun() -> None
     away, near = sky.radiance(np.array([[0.0, 0.8, -0.6], [0.0, 0.7071, 0.7071]]))
     assert away[2] > 1.5 * away[0]
     assert near @ LUMINANCE > 3 * (away @ LUMINANCE)
+
+
+def test_haze_sends_a_twentieth_of_the_beam_from_around_the_disc() -> None:
+    angle = np.radians(np.linspace(0.0, 60.0, 20001))
+    ring = 2 * np.pi * np.sin(angle) * aureole(angle)
+    assert np.trapezoid(ring, angle) == pytest.approx(0.05, rel=0.03)
+    sky = clear_sky(0.0, 40.0)
+    tilt = np.radians([40.0, 41.0, 43.0, 50.0])
+    glow = sky.radiance(np.stack([0 * tilt, np.sin(tilt), np.cos(tilt)], axis=1)) @ LUMINANCE
+    assert (np.diff(glow) < 0).all()
+    assert glow[0] > 8 * glow[3]
 
 
 def test_the_white_point_gives_equal_channels() -> None:
