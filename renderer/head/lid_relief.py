@@ -284,4 +284,5 @@ def _blood(place: _Layout, sources: _Sources, eye: int) -> Floats:
     fine = _sample(sources.coarse, 2.6 * x + 3 * shift, 2.6 * y)
     contour = _sample(sources.coarse, 1.15 * x - shift, 1.15 * y)
     vessels = np.exp(-((contour / 0.07) ** 2)) * _ease(blotches * 0.6 + 0.25)
-    return np.asarray(0.55 * blotches + 0.4 * fine + 1.1 * vessels + 0.8 * _orifices(place))
+    veined = 1.2 + 1.3 * place.upper
+    return np.asarray(0.5 * blotches + 0.4 * fine + veined * vessels + 0.8 * _orifices(place))

@@ -16,13 +16,15 @@ from renderer.head.brows import BROW_COLOUR, stubble
 from renderer.head.face_mesh import SkinPart
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import inside_hairline
+from renderer.head.lid_relief import AROUND_MM
 from renderer.head.unrolling import unroll_mm
 
 SCALP: Final = 0.55  # what is dark between the hairs, as a share of their colour
 BASE: Final = (0.60, 0.368, 0.280)
 LIPS: Final = (0.50, 0.235, 0.205)
 MARGIN: Final = (0.60, 0.340, 0.290)
-MARGIN_FLUSH: Final = (0.98, 0.86, 0.85)  # the fine vessels where the lashes grow
+MARGIN_FLUSH: Final = (0.98, 0.89, 0.88)  # the fine vessels where the lashes grow
+THIN: Final = (0.91, 0.85, 0.89)  # veins and muscle through the upper lid: bluish red
 WET: Final = (0.60, 0.300, 0.268)
 SCLERA: Final = (0.66, 0.555, 0.49)  # seen through the conjunctiva in the corners
 CARUNCLE: Final = (0.62, 0.255, 0.215)
@@ -77,8 +79,6 @@ def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
         x, y = local[:, 0] * (1.0 if eye else -1.0), local[:, 1]
         lid = np.exp(-((x / 17.0) ** 2) - ((y - 1.0) / 11.0) ** 2)
         fold = np.exp(-(((x + 1.0) / 14.0) ** 2) - ((y - 9.0) / 4.5) ** 2)
-        plate = 4.1 * (1 - ((x + 1.2) / 14.5) ** 2) + 1.7  # between lashes and crease
-        plate = np.exp(-(((y - plate) / 1.9) ** 2) - (x / 14.0) ** 4)
         ring = np.exp(-(((x + 2.0) / 15.0) ** 2) - ((y + 10.5) / 4.5) ** 2)
         trough = np.exp(-(((x + 11.0) / 7.0) ** 2) - ((y + 9.5 + 0.35 * x) / 3.5) ** 2)
         inner = np.exp(-(((x + 16.0) / 5.0) ** 2) - ((y + 1.5) / 6.0) ** 2)
@@ -86,15 +86,19 @@ def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
         for weight, factor in (
             (lid, (1.00, 0.95, 0.95)),
             (fold, (1.05, 1.03, 1.05)),
-            (plate, (0.90, 0.84, 0.86)),
             (ring, (0.95, 0.91, 0.97)),
             (trough, (0.90, 0.88, 0.97)),
-            (inner, (0.98, 0.88, 0.90)),
+            (inner, (0.98, 0.91, 0.92)),
             (fat, (1.03, 1.04, 1.02)),
         ):
             albedo *= 1 + weight[:, None] * (np.array(factor) - 1)
-    beside_margin = part.lid * np.exp(-(((part.along_mm[:, 1] - 2.0) / 1.1) ** 2))
-    albedo *= 1 + beside_margin[:, None] * (np.array(MARGIN_FLUSH) - 1)
+    around, across = part.along_mm.T
+    beside_margin = part.lid * np.exp(-(((across - 2.0) / 1.1) ** 2))
+    # From the lashes up into the fold, where the skin is the body's thinnest.
+    is_upper = np.clip(np.sin(2 * np.pi * around / AROUND_MM), 0.0, 1.0) ** 0.5
+    thin = part.lid * is_upper * np.exp(-(((across - 5.2) / 5.2) ** 4))
+    for weight, factor in ((beside_margin, MARGIN_FLUSH), (thin, THIN)):
+        albedo *= 1 + weight[:, None] * (np.array(factor) - 1)
 
 
 def _gloss(part: SkinPart) -> Floats:

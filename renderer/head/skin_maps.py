@@ -107,7 +107,7 @@ def colour_tile(seed: int = 12) -> Bytes:
     blood = mixed((0.45, 3.2), (0.6, 1.1), (0.5, 0.45))
     melanin = mixed((0.5, 2.0), (0.4, 0.6), (0.3, 0.3))
     return _bytes(
-        0.5 + 0.11 * blood,
+        0.5 + 0.085 * blood,
         0.5 + 0.10 * melanin + 0.40 * _freckles(rng),
         0.5 + 0.16 * mixed((0.7, 1.6), (0.6, 0.5)),
         0.5 + 0.15 * mixed((0.8, 2.2), (0.6, 0.7)),

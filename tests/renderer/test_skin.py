@@ -38,6 +38,47 @@ def test_albedo_is_physical_and_skin_is_redder_than_blue() -> None:
         assert gloss.max() <= 1.0
 
 
+def lab(albedo: np.ndarray) -> np.ndarray:
+    """Return CIELAB (n, 3) of linear Rec. 709 under D65 (IEC 61966-2-1, CIE 15)."""
+    matrix = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    share = albedo @ np.array(matrix).T / [0.9505, 1.0, 1.089]
+    x, y, z = np.cbrt(share).T
+    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=1)
+
+
+def test_dry_skin_has_colours_that_were_measured_on_faces() -> None:
+    """L* 55 to 73, a* 5 to 18, b* 8 to 22 hold the Caucasian faces of Xiao et al. 2017,
+
+    "Characterising the variations in ethnic skin colours" (means 63, 11, 15), lids included.
+    """
+    face = face_mesh()
+    for part, dry in (
+        (face.fine, (face.fine.lips < 0.01) & (np.abs(face.fine.points_mm[:, 1]) < 12)),
+        (face.patches[0], (face.patches[0].margin < 0.01) & (face.patches[0].wet < 0.01)),
+    ):
+        front = dry & (part.points_mm[:, 2] > 0.0) & (part.points_mm[:, 1] < 11.0)
+        colours = lab(skin.paint(part)[0][front])
+        assert front.sum() > 100
+        low, high = np.percentile(colours, (2, 98), axis=0)
+        assert (low > [55.0, 5.0, 8.0]).all(), low
+        assert (high < [73.0, 18.0, 22.0]).all(), high
+
+
+def test_thin_skin_is_bluer_and_inner_corners_are_redder_than_the_cheek() -> None:
+    face = face_mesh()
+    patch = face.patches[1]
+    colours = lab(skin.paint(patch)[0])
+    around, across = patch.along_mm.T
+    upper_lid = (around > 10) & (around < 24) & (across > 3.5) & (across < 5.5)
+    cheek = (around > 44) & (around < 58) & (across > 12.0)
+    assert upper_lid.any()
+    assert cheek.any()
+    assert colours[upper_lid, 2].mean() < colours[cheek, 2].mean() - 0.5
+    assert colours[upper_lid, 0].mean() < colours[cheek, 0].mean() - 2.0
+    inner = (np.abs(around - 34) < 2) & (across > 2.0) & (across < 4.0)
+    assert colours[inner, 1].mean() > colours[cheek, 1].mean() + 1.0
+
+
 def test_the_wet_rim_is_redder_than_the_cheek() -> None:
     patch = face_mesh().patches[1]
     albedo, _ = skin.paint(patch)
