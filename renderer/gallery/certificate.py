@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 from PIL import Image
@@ -11,23 +13,27 @@ from renderer.gallery.shots import Captioned, Take
 from renderer.gallery.strips import Strip
 from renderer.picture import Pixels
 
+FIGURES: Final = "certification.json"
+
 
 def certificate_strips(folder: Path) -> tuple[Strip, ...]:
     """Return the strip of a certificate's figures, nothing where the folder holds none."""
-    figures = sorted(folder.glob("*.png"))
-    if not figures:
+    if not (folder / FIGURES).is_file():
         return ()
+    told = json.loads((folder / FIGURES).read_text(encoding="utf-8"))
+    pictures = [folder / f"{picture['case']['name']}.png" for picture in told["pictures"]]
 
     def tiles(take: Take) -> list[Captioned]:
         del take  # the figures are there: no shot is taken
-        return [(_caption(path), _read(path)) for path in figures]
+        return [(path.stem.replace("-", " "), _read(path)) for path in pictures]
 
-    title = "Against a path tracer: ocularist certify"
-    return (Strip("certificate", title, tiles, columns=2, tile_px=900),)
+    return (Strip("certificate", _title(told["aims"]), tiles, columns=1, tile_px=1300),)
 
 
-def _caption(path: Path) -> str:
-    return path.stem.replace("-", " ").replace("_", " ")
+def _title(aims: list[dict[str, object]]) -> str:
+    met = sum(bool(aim["is_met"]) for aim in aims)
+    first = f"{aims[0]['words']}: {aims[0]['reached_percent']:.1f} %"
+    return f"Beside a path tracer: {met} of {len(aims)} aims met; {first}"
 
 
 def _read(path: Path) -> Pixels:

@@ -8,7 +8,7 @@ from renderer.gallery.shots import BOTH_EYES, LEFT_EYE, LEFT_IRIS, Shot, left_on
 from renderer.gallery.strips import Strip, of_shots
 
 SUN_AZIMUTHS_DEG: Final = (-60, -30, 0, 30, 60)
-SUN_ELEVATIONS_DEG: Final = (5, 15, 25, 35, 50)
+SUN_ELEVATIONS_DEG: Final = (5, 15, 35, 50, 65)
 
 
 def _sun() -> list[Shot]:

@@ -98,7 +98,7 @@ def _levels(effect: str) -> list[Shot]:
 def _orbit() -> list[Shot]:
     return [
         Shot(f"{azimuth:+d} degrees", left_only(), azimuth_deg=azimuth)
-        for azimuth in (-60, -30, 0, 30, 60)
+        for azimuth in (-60, -40, -20, 0, 20, 40)
     ]
 
 
@@ -178,7 +178,7 @@ STRIPS: Final = (
     Strip("distances", "One pair of eyes at the four distances", of_shots(_distances()), 2, 800),
     Strip("without", "Ultra without one effect", of_shots(_leave_one_out())),
     Strip("alone", "One effect alone, at ultra", of_shots(_alone())),
-    Strip("orbit", "Ultra along the orbit", of_shots(_orbit()), 5, 400),
+    Strip("orbit", "Ultra along the orbit", of_shots(_orbit()), 3),
     Strip("iris-colours", "Iris colours", of_shots(_iris(IRIS_COLOURS, (1,))), 4, 400),
     Strip("iris-seeds", "Seeds", of_shots(_iris(("blue", "brown"), (2, 3, 4, 5))), 4, 400),
     Strip("pupils", "The pupil stretches the iris", of_shots(_pupils()), 3, 400),
