@@ -195,7 +195,7 @@ def _managed(pixels: Encoded, profile: bytes, notes: list[str]) -> Encoded:
             "RGB",
             renderingIntent=ImageCms.Intent.RELATIVE_COLORIMETRIC,
         )
-    except ImageCms.PyCMSError:
+    except (ImageCms.PyCMSError, OSError):
         notes.append("its colour profile cannot be applied: taken as sRGB")
         return pixels
     if pixels.dtype == np.uint8:

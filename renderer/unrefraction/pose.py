@@ -226,20 +226,21 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
 
     x_scale = np.array([1.0, 1.0, 0.01, 0.1, 0.1, 0.05, 0.1, 0.1, 0.01, 0.1, 0.01, 0.01])
 
-    def best(first: list[Array]) -> Array:
+    def best(first: list[Array], *, most: int) -> Array:
         fits = [
-            optimize.least_squares(residuals, at, x_scale=x_scale, loss="soft_l1", max_nfev=40)
+            optimize.least_squares(residuals, at, x_scale=x_scale, loss="soft_l1", max_nfev=most)
             for at in first
         ]
         return np.asarray(min(fits, key=lambda fit: float(fit.cost)).x)
 
     # Both turns explain a shortened circle alike until the pupil's shift tells them apart.
-    found = best([start * _signs(sx, sy) for sx in (6.0, -6.0) for sy in (6.0, -6.0)])
+    turns = [start * _signs(sx, sy) for sx in (6.0, -6.0) for sy in (6.0, -6.0)]
+    found = best([best(turns, most=25)], most=30)
     if abs(found[-1]) > math.radians(SNAP_DEG):
         return pose(found)
     # The limbus is too nearly round to tell a small roll from none: the photograph's own vertical.
     roll, spread = 0.0, 1e-4
-    return pose(best([found]))
+    return pose(best([found], most=30))
 
 
 def _signs(yaw: float, pitch: float) -> Array:

@@ -38,9 +38,8 @@ from renderer.unrefraction.sighting import Crop, Sighting, Told, see_eye
 from renderer.unrefraction.texels import Texels, place_texels
 from renderer.unrefraction.tissue import (
     build_height,
-    build_thickness,
-    scattering_of,
     surface_mm,
+    unshaded,
 )
 
 Field = npt.NDArray[np.float32]
@@ -170,15 +169,11 @@ def _assembled(
     r = texels.radius_mm
     look = _with_pupil(look, r)
     height, cavity = build_height(look, r)
-    # Cavities are dark in the photograph already: their shade is taken out of the colour, because
-    # whoever draws the maps puts it back.
-    albedo = np.clip(look / np.maximum(cavity, 0.35)[..., None], 0.0015, 0.95).astype(np.float32)
-    thickness = build_thickness(albedo, height, r)
+    albedo, thickness, layers = unshaded(look, height, cavity, r)
     tissue = _ring(texels, IRIS_RADIUS_MM)
     n = thickness.shape[0]
     coarse = tissue.reshape(n, BASE_PX // n, n, BASE_PX // n)[:, 0, :, 0]
     mean = albedo[tissue].mean(axis=0, dtype=np.float64).astype(np.float32)
-    layers = scattering_of(mean)
     relief = surface_mm(height)
     arrays: dict[str, npt.NDArray[Any]] = {
         "albedo": pack_albedo(albedo),

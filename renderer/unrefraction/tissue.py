@@ -13,10 +13,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from renderer.eye.subsurface import Tissue
+from renderer.eye.subsurface import Tissue, henyey_greenstein, subsurface_gain
 from renderer.iris.maps import IRIS_RADIUS_MM, PUPIL_RADIUS_MM
 from renderer.iris.pigment import luminance
-from renderer.iris.plane import blur
+from renderer.iris.plane import blur, enlarge
 from renderer.textures.sizes import shrink, smoothstep
 
 Field = npt.NDArray[np.float32]
@@ -25,6 +25,8 @@ STRAND_MM: Final = 0.025  # sigma of the fine mean: with BUNDLE_MM a band of 40 
 BUNDLE_MM: Final = 0.09
 RELIEF_MM: Final = 0.5
 THICKNESS_PX: Final = 512
+MULTIPLE_SHARE: Final = 0.45  # as renderer.eye.maps has it, which needs GL; a test compares them
+LEAST_SHADE: Final = 0.35  # no cavity or thin layer is brightened more than to 1 / 0.35
 BAND_LIMIT_MM: Final = 0.075  # of the layers: see renderer.iris.layers
 
 
@@ -101,3 +103,42 @@ def scattering_of(mean_albedo: Field) -> Tissue:
     sigma_s = np.stack([18.0 * pigment, 5.0 * hue, 4.0 * hue, 0.4 * pigment])
     sigma_t = np.stack([np.full(3, 20.0), sigma_s[1] + 0.6, sigma_s[2] + 0.9, np.full(3, 60.0)])
     return Tissue(sigma_s, sigma_t, np.array([0.25, 0.30, 0.30, 0.0]))
+
+
+def layered_share(thickness_mm: Field, tissue: Tissue, *, mean_mm: Field) -> Field:
+    """Return the share of their colour that layers (n, n, 4) reflect, (n, n, 3).
+
+    What ``shaders/subsurface.glsl`` draws where layers lie flat, seen and lit along the axis: each
+    layer's single scattering in closed form. 1 where the layers have their mean thickness.
+    """
+    phase = henyey_greenstein(-1.0, tissue.anisotropy)
+    single = np.zeros((*thickness_mm.shape[:2], 3))
+    left = np.ones_like(single)
+    for layer in range(thickness_mm.shape[-1]):
+        both_ways = 2.0 * tissue.sigma_t[layer]
+        through = left * np.exp(-both_ways * thickness_mm[..., layer : layer + 1])
+        single += tissue.sigma_s[layer] * phase[layer] * (left - through) / both_ways
+        left = through
+    white = np.pi * subsurface_gain(np.asarray(mean_mm, np.float64), tissue) * single
+    return np.asarray(white + (1.0 - white) * MULTIPLE_SHARE, np.float32)
+
+
+def unshaded(
+    look: Field, height: Field, cavity: Field, radius_mm: Field
+) -> tuple[Field, Field, Tissue]:
+    """Split a look into colour (n, n, 3), layers in mm (512, 512, 4) and their coefficients.
+
+    Gaps are dark in a photograph because they lie deep and their layers are thin. Whoever draws
+    the maps adds both again, so both are taken out of the colour.
+    """
+    n = look.shape[0]
+    tissue = (radius_mm > PUPIL_RADIUS_MM + 0.1) & (radius_mm < IRIS_RADIUS_MM)
+    open_look = np.asarray(look / np.maximum(cavity, LEAST_SHADE)[..., None], np.float32)
+    layers = build_thickness(open_look, height, radius_mm)
+    scattering = scattering_of(open_look[tissue].mean(axis=0))
+    coarse = shrink(tissue.astype(np.float32), layers.shape[0]) > 0.99
+    mean = layers[coarse].mean(axis=0, dtype=np.float64)
+    share = layered_share(layers, scattering, mean_mm=mean)
+    share = np.stack([enlarge(share[..., c], n) for c in range(3)], axis=-1)
+    share = np.where(tissue[..., None], np.maximum(share, LEAST_SHADE), np.float32(1.0))
+    return np.clip(open_look / share, 0.0015, 0.95).astype(np.float32), layers, scattering
