@@ -176,3 +176,19 @@ def test_the_same_view_gives_the_same_pixels(
     first = picture(gl, head, light, position=(100.0, 0.0, 360.0))[1]
     picture(gl, head, light, position=(-900.0, 0.0, 1200.0))
     np.testing.assert_array_equal(first, picture(gl, head, light, position=(100.0, 0.0, 360.0))[1])
+
+
+def test_shut_lids_close_the_fissure_with_lit_skin(gl: moderngl.Context, light: Light) -> None:
+    low = Detail.uniform("low")
+    spec = ClipSpec(left=low, right=low, blink=1.0)
+    shut = Head(gl, spec)
+    bare, haired = picture(gl, shut, light, position=(31.0, 0.0, 165.0), target=(31.0, 0.0, 0.0))
+    middle = bare[56:64, 76:84, :3]
+    assert middle.min() > 0.1
+    assert np.median(middle) > 0.25
+    # Her lashes went down with the lid.
+    below = (haired - bare)[30:50].min()
+    assert below < -0.05
+    upper = shut.rims[1].upper_mm
+    lower = np.interp(upper[:, 0], *shut.rims[1].lower_mm[:, :2].T)
+    assert (upper[:, 1] - lower).max() < 1e-3
