@@ -21,7 +21,7 @@ COLOUR: Final = (0.060, 0.033, 0.019)
 KNOT_MM: Final = (0.0, 18.0, -205.0)  # where the comb gathers the hair
 THICKNESS_MM: Final = 9.0
 SUNK_MM: Final = 1.5  # of the mass at the hairline, which only hairs draw
-POINTS: Final = 9
+POINTS: Final = 8
 
 
 @dataclass(frozen=True)
@@ -42,9 +42,9 @@ class Layer:
 
 
 LAYERS: Final = (
-    Layer(3000, 88.0, (0.8, 1.6), 14.0, -1.0, 0.05, 0.6),
-    Layer(2000, 46.0, (0.25, 0.7), 4.0, 2.0, 0.12, 0.6),
-    Layer(1000, 15.0, (0.05, 0.09), 2.5, 4.5, 0.45, 0.9),  # just grown
+    Layer(2300, 88.0, (0.9, 1.9), 14.0, -1.0, 0.05, 0.6),
+    Layer(1600, 46.0, (0.25, 0.7), 4.0, 2.0, 0.12, 0.6),
+    Layer(800, 15.0, (0.05, 0.09), 2.5, 4.5, 0.45, 0.9),  # just grown
 )
 # The hairline as height in mm over the azimuth around the head (0 front, 180 back), face to nape.
 HAIRLINE: Final = np.array(

@@ -11,7 +11,8 @@ uniform int u_strands;
 
 out vec4 out_radiance;
 
-// How much of a pixel around ``at`` lies within ``half_px`` of the hair's middle.
+// How much of a pixel around ``at`` lies within ``half_px`` of the hair's middle. A wider box would
+// be softer, but only one pixel's neighbours add up to the hair's width wherever it lies.
 float covered(float at, float half_px) {
     return max(min(half_px, at + 0.5) - max(-half_px, at - 0.5), 0.0);
 }

@@ -52,12 +52,16 @@ void main() {
     // A lock seen end-on would be a blot.
     if (u_strands > 1) half_px *= smoothstep(0.02, 0.2, length(cross(in_tangent, v)));
     v_ribbon = vec4(in_ribbon.x * (half_px + MARGIN_PX), half_px, in_ribbon.z, in_ribbon.w);
-    FibreLight light = fibre_light(in_tangent, v, in_colour.rgb, in_ribbon.z, in_sun);
+    bool is_drawn = in_ribbon.w <= kept;
+    // Software GL computes both sides of an if, but skips a loop that no vertex of a block enters.
+    int lit = is_drawn && in_colour.a == 0.0 ? 1 : 0;
+    FibreLight light = FibreLight(vec3(0.0), vec3(0.0));
+    for (int i = 0; i < lit; ++i)
+        light = fibre_light(in_tangent, v, in_colour.rgb, in_ribbon.z, in_sun);
     v_body = light.body;
     v_glint = light.glint;
 
     vec3 p_world = in_position + across * (in_ribbon.x * reach_mm);
     p_world += v * (in_colour.a > 0.0 ? SHADOW_LIFT_MM : 0.0);
-    bool is_drawn = in_ribbon.w <= kept;
     gl_Position = is_drawn ? u_projection * u_view_matrix * vec4(p_world, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -26,7 +26,7 @@ bool between_lids(vec3 p_eye) {
 const float LASH_REACH_MM = 7.2;   // forwards, at most
 const float LASH_CURL = 0.09;      // height over the rim = LASH_CURL * way^2, per mm
 const float LASH_FAN = 0.09;       // sideways per mm of way and mm off the middle
-const float LASH_HALF_MM = 0.033;
+const float LASH_HALF_MM = 0.03;
 const float LASHES_PER_MM = 6.0;   // in all rows
 const float LASH_END_MM = 12.2;    // off the middle
 const int LASH_ROWS = 3;
@@ -68,7 +68,7 @@ float lash_cover(vec3 at, vec3 d_eye, float room_mm, float reach_mm) {
     if (way > LASH_REACH_MM) return 0.0;
     float root_mm = (at.x + way * d_eye.x / max(d_eye.z, 0.05)) / (1.0 + LASH_FAN * way);
     // Half the sun's width, or a pixel's cone in the cornea's mirror.
-    float blur_mm = 0.025 + (0.014 + u_mm_per_px / CORNEA_RADIUS_MM) * (reach_mm + way);
+    float blur_mm = 0.03 + (0.018 + u_mm_per_px / CORNEA_RADIUS_MM) * (reach_mm + way);
     float along = 1.0 - smoothstep(LASH_END_MM - 1.5, LASH_END_MM, abs(root_mm));
     return along * lash_hairs(root_mm, way, blur_mm);
 }
