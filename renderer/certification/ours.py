@@ -67,6 +67,7 @@ def our_eye(gl: moderngl.Context, spec: ClipSpec, environment: SoftEnvironment) 
         light=light,
         static_cube=lambda _size: gl.texture_cube((FACE_PX, FACE_PX), 4, data, dtype="f2"),
         crowd_cube=None,
+        has_face=False,
     )
 
 

@@ -37,7 +37,12 @@ def trace_picture(
     scene = mi.load_dict(
         {
             "type": "scene",
-            "integrator": {"type": "path", "max_depth": DEPTH, "rr_depth": DEPTH},
+            "integrator": {
+                "type": "path",
+                "max_depth": DEPTH,
+                "rr_depth": DEPTH,
+                "hide_emitters": True,  # black around the eye, as ours
+            },
             "sensor": _camera(mi, view),
             "environment": emitter(mi, environment),
             **shapes,

@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
+from scipy import ndimage
 
 from renderer.camera import Matrix, camera_radius_mm, look_at, perspective
 from renderer.eye.anatomy import CORNEA_IOR, GLOBE_RADIUS_MM, LIMBUS_Z_MM, PROFILE_END_MM
@@ -77,6 +78,7 @@ def regions(view: View, pupil_mm: float) -> dict[str, Mask]:
     landing = np.hypot(*np.moveaxis(to_iris_plane(hit, bent), -1, 0))
     # The back of the globe lies in the head: it is not drawn.
     faces = meets & (np.sum(normal * rays, axis=-1) < 0.0) & (hit[..., 2] > 0.0)
+    faces = np.asarray(ndimage.binary_erosion(faces, border_value=1))  # pixels half outside
     in_iris = faces & (clear > 0.5) & (landing < ROOT_MM) & (landing > pupil_mm / 2)
     in_sclera = faces & (clear < 0.02)
     in_pupil = faces & (clear > 0.5) & (landing <= pupil_mm / 2)

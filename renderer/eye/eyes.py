@@ -71,9 +71,14 @@ class Eyes:
         light: Light,
         static_cube: Callable[[int], moderngl.TextureCube],
         crowd_cube: moderngl.TextureCube | None,
+        has_face: bool = True,
     ) -> None:
-        """Build both eyes in their light; ``static_cube`` gives the surroundings at a size."""
+        """Build both eyes in their light; ``static_cube`` gives the surroundings at a size.
+
+        Without a face (``has_face``) they mirror all of the surroundings.
+        """
         self._gl = gl
+        self._has_face = has_face
         self.models = tuple(
             self._build(
                 eye,
@@ -144,7 +149,7 @@ class Eyes:
         light: Light,
         cubes: dict[str, moderngl.TextureCube],
     ) -> EyeModel:
-        constants = eye_constants(detail, spec)
+        constants = eye_constants(detail, spec) | {"OWN_FACE": int(self._has_face)}
         program = build_program(self._gl, "eye.vert", fragment="eye.frag", constants=constants)
         turn = gaze_rotation(*gaze_deg(spec, eye))
         is_gathered = detail.caustics in {"high", "ultra"} and spec.caustic_pattern == "computed"

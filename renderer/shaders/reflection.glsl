@@ -79,7 +79,8 @@ vec3 surroundings(vec3 d_world, float cone) {
 vec3 mirrored(Surface s, vec3 n) {
     vec3 d = reflect(-s.v_eye, n);
     vec3 d_world = turned_to_world(d);
-    float open_share = lid_openness(s.p_eye, d, 0.9) * smoothstep(-0.15, 0.25, d_world.z);
+    float past_face = OWN_FACE == 1 ? smoothstep(-0.15, 0.25, d_world.z) : 1.0;
+    float open_share = lid_openness(s.p_eye, d, 0.9) * past_face;
     vec3 skin = LID_REFLECTANCE * ambient_irradiance(vec3(0.0, 0.0, 1.0)) * (0.5 / PI);
     float cone = 2.0 * u_mm_per_px / CORNEA_RADIUS_MM + 4.0 * sqrt(s.film_variance);
     if (SCLERA < HIGH || REFLECTION < HIGH) cone += (1.0 - s.cornea) * PLAIN_BLUR;

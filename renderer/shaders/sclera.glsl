@@ -53,5 +53,10 @@ vec3 sclera_radiance(Surface s) {
     // Light seeps into the lids' shade, red furthest.
     vec3 sun = u_sun_irradiance * pow(vec3(s.sun), SHADE_SEEP) * wrapped;
     vec3 ambient = ambient_irradiance(turned_to_world(n)) * s.sky;
-    return s.albedo * (sun + ambient) / PI;
+    // The map shows the tissue face-on through the tear film: at a slant the film mirrors more, and
+    // lets that much less of the tissue's light through.
+    float film = 1.0;
+    if (REFLECTION >= MEDIUM)
+        film = (1.0 - fresnel(clamp(dot(s.n_eye, s.v_eye), 0.0, 1.0))) / (1.0 - fresnel(1.0));
+    return film * s.albedo * (sun + ambient) / PI;
 }

@@ -96,7 +96,7 @@ def test_the_iris_agrees_with_the_path_tracers(certificate: Certificate, number:
 def test_limbus_and_sclera_agree_roughly(certificate: Certificate) -> None:
     for result in certificate.pictures:
         for region in ("limbus", "sclera"):
-            assert np.abs(result.score.regions[region].bias_percent).max() < 8.0
+            assert np.abs(result.score.regions[region].bias_percent).max() < 2.5
 
 
 def test_furnace_an_even_iris_is_as_bright_in_both(certificate: Certificate) -> None:
