@@ -3,136 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
-import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import eye_centre_mm, look_at, perspective
-from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.eye import eyes as eye_module
-from renderer.eye import maps as eye_maps
-from renderer.eye import sunlight
 from renderer.eye.anatomy import CORNEA_IOR
-from renderer.eye.eyes import APPARENT_GAIN, Eyes, gaze_rotation
+from renderer.eye.eyes import APPARENT_GAIN, gaze_rotation
 from renderer.eye.lids import LidRims
 from renderer.eye.optics import fresnel
-from renderer.eye.sclera import ScleraMaps
 from renderer.eye.silhouette import opening_box, opening_points
-from renderer.eye.subsurface import Tissue
-from renderer.iris.maps import IrisMaps
-from renderer.light import Light, Sky
 
 ALBEDO = np.array([0.3, 0.2, 0.1], np.float32)
-TISSUE = Tissue(np.full((4, 3), 3.0), np.full((4, 3), 5.0), np.full(4, 0.3))
-OPEN = LidRims(*(np.array([[-40.0, y, 0.0], [40.0, y, 0.0]]) for y in (60.0, -60.0)))
 OFF = Detail.uniform("off")
-DISTANCE_MM = 6000.0
 HALF_MM = 7.0  # half the picture's height at the eye
-
-
-def flat_iris(n: int) -> IrisMaps:
-    """An even iris, brighter towards +x, without relief; n texels a side."""
-    ramp = (1 + 0.4 * np.linspace(-1, 1, n, dtype=np.float32))[None, :, None]
-    ramp = ramp if n > 1 else np.ones((1, 1, 1), np.float32)
-    return IrisMaps(
-        albedo=np.broadcast_to(ramp * ALBEDO, (n, n, 3)),
-        normal=np.broadcast_to(np.array([0, 0, 1], np.float32), (n, n, 3)),
-        height_mm=np.zeros((n, n), np.float32),
-        thickness_mm=np.broadcast_to(np.array([0.05, 0.15, 0.15, 0.05], np.float32), (n, n, 4)),
-        cavity=np.ones((n, n), np.float32),
-    )
-
-
-class FlatIris:
-    """What ``iris_of`` returns, for an iris whose answers are known."""
-
-    mean_albedo = ALBEDO
-    mean_thickness_mm = np.array([0.05, 0.15, 0.15, 0.05], np.float32)
-    tissue = TISSUE
-
-    def maps(self, size_px: int) -> IrisMaps:
-        return flat_iris(size_px)
-
-
-def flat_sclera(_seed: int, *, size_px: int) -> ScleraMaps:
-    shape = (size_px, size_px, 3)
-    return ScleraMaps(
-        albedo=np.full(shape, 0.6, np.float32),
-        normal=np.broadcast_to(np.array([0, 0, 1], np.float32), shape),
-    )
-
-
-@dataclass
-class Bench:
-    """Eyes under a chosen light, and their linear radiance."""
-
-    gl: moderngl.Context
-
-    def eyes(
-        self,
-        left: Detail,
-        right: Detail = OFF,
-        *,
-        sun: float = 0.0,
-        sky: float = 1.0,
-        rims: tuple[LidRims, LidRims] = (OPEN, OPEN),
-        toward_sun: tuple[float, float, float] = (-0.5, 0.5, math.sqrt(0.5)),
-        has_crowd: bool = True,
-        **spec: Any,
-    ) -> Eyes:
-        ambient = np.zeros((9, 3))
-        ambient[0] = sky / 0.282095
-        lit = self.gl.texture((1, 1), 1, np.ones(1, np.float32).tobytes(), dtype="f4")
-        light = Light(
-            Sky(np.array(toward_sun), np.full(3, sun), ambient), lit, np.eye(4, dtype=np.float32)
-        )
-        mirrored = np.full((6, 4), sky, np.float16).tobytes()
-        nobody = np.zeros((6, 4), np.float16).tobytes()
-        return Eyes(
-            self.gl,
-            ClipSpec(left=left, right=right, **spec),
-            rims=rims,
-            light=light,
-            static_cube=lambda _size: self.gl.texture_cube((1, 1), 4, mirrored, dtype="f2"),
-            crowd_cube=self.gl.texture_cube((1, 1), 4, nobody, dtype="f2") if has_crowd else None,
-        )
-
-    def picture(
-        self, eyes: Eyes, eye: int = 0, *, size: tuple[int, int] = (64, 64), azimuth_deg: float = 0
-    ) -> np.ndarray:
-        """Return linear radiance (height, width, 3), row 0 at the bottom, from far away."""
-        turn = math.radians(azimuth_deg)
-        centre = eye_centre_mm(eye)
-        camera = centre + DISTANCE_MM * np.array([math.sin(turn), 0.0, math.cos(turn)])
-        fov_deg = 2 * math.degrees(math.atan(HALF_MM / (DISTANCE_MM - 10)))
-        target = self.gl.framebuffer(
-            [self.gl.texture(size, 4, dtype="f4")], self.gl.depth_texture(size)
-        )
-        target.use()
-        target.clear()
-        eyes.draw(
-            eye,
-            view_matrix=look_at(camera, centre),
-            projection=perspective(fov_deg, size[0] / size[1], 5000, 7000),
-            camera_mm=camera,
-        )
-        pixels = np.frombuffer(target.read(components=3, dtype="f4"), np.float32)
-        return pixels.reshape(size[1], size[0], 3)
-
-
-@pytest.fixture
-def bench(gl: moderngl.Context, monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> Bench:
-    monkeypatch.setenv("OCULARIST_CACHE", str(tmp_path))
-    monkeypatch.setattr(eye_maps, "iris_of", lambda _spec: FlatIris())
-    monkeypatch.setattr(eye_maps, "sclera_maps", flat_sclera)
-    monkeypatch.setattr(eye_maps.sclera, "mean_albedo", lambda *_: np.full(3, 0.6))
-    monkeypatch.setattr(eye_module, "CHAMBER_PX", 16)
-    monkeypatch.setattr(sunlight, "SHADE_MAP_PX", 64)
-    return Bench(gl)
 
 
 def pupil_mm(pixels: np.ndarray) -> float:
@@ -146,7 +31,7 @@ def pupil_mm(pixels: np.ndarray) -> float:
     return 2 * math.sqrt(float(dark) * mm_per_px**2 / math.pi)
 
 
-def test_refraction_magnifies_the_pupil(bench: Bench) -> None:
+def test_refraction_magnifies_the_pupil(bench: Any) -> None:
     """4.00 mm looks 4.44 mm wide: 4.48 near the axis (reference 1.3), less off it, by Snell's law.
 
     The ray along the axis from r = 2.22 mm: slope 16.4 degrees, bent by 4.2, meets 2.00 mm.
@@ -157,12 +42,12 @@ def test_refraction_magnifies_the_pupil(bench: Bench) -> None:
     assert pupil_mm(magnified) == pytest.approx(4.44, abs=0.02)
 
 
-def test_the_pupils_diameter_is_the_clips(bench: Bench) -> None:
+def test_the_pupils_diameter_is_the_clips(bench: Any) -> None:
     wide = bench.picture(bench.eyes(OFF, pupil_mm=5.0), size=(120, 120))
     assert pupil_mm(wide) == pytest.approx(5.0, abs=0.06)
 
 
-def test_furnace_the_iris_leaves_its_albedo_and_fresnels_share(bench: Bench) -> None:
+def test_furnace_the_iris_leaves_its_albedo_and_fresnels_share(bench: Any) -> None:
     """Under radiance 1 from everywhere a flat interface lets in all but Fresnel's diffuse share.
 
     So the iris shows gain x albedo x that x (1 - F), and F on top, but for what the limbus hides.
@@ -178,7 +63,7 @@ def test_furnace_the_iris_leaves_its_albedo_and_fresnels_share(bench: Bench) -> 
     np.testing.assert_allclose(pixels[48, at], expected, rtol=0.03)
 
 
-def test_without_cornea_the_iris_is_lambertian(bench: Bench) -> None:
+def test_without_cornea_the_iris_is_lambertian(bench: Any) -> None:
     pixels = bench.picture(bench.eyes(OFF))
     np.testing.assert_allclose(pixels[32, 32 + 14], ALBEDO, rtol=0.01)
 
@@ -192,21 +77,21 @@ def test_without_cornea_the_iris_is_lambertian(bench: Bench) -> None:
         ("caustics", "medium"),
     ],
 )
-def test_levels_that_the_table_leaves_out_equal_off(bench: Bench, effect: str, level: str) -> None:
+def test_levels_that_the_table_leaves_out_equal_off(bench: Any, effect: str, level: str) -> None:
     base = Detail.uniform("high")
     row, off = base.with_levels(**{effect: level}), base.with_levels(**{effect: "off"})
     draw = [bench.picture(bench.eyes(d, sun=2.0), azimuth_deg=20) for d in (row, off)]
     np.testing.assert_array_equal(draw[0], draw[1])
 
 
-def test_levels_that_are_off_leave_no_uniform_behind(bench: Bench) -> None:
+def test_levels_that_are_off_leave_no_uniform_behind(bench: Any) -> None:
     eyes = bench.eyes(OFF, Detail.uniform("ultra"))
     names = ("u_caustic_map", "u_thickness", "u_static_cube", "u_crowd_cube", "u_sclera_normal")
     assert [eyes.is_active(0, name) for name in names] == [False] * 5
     assert [eyes.is_active(1, name) for name in names] == [True] * 5
 
 
-def test_only_reflection_brings_a_glint_to_the_cornea(bench: Bench) -> None:
+def test_only_reflection_brings_a_glint_to_the_cornea(bench: Any) -> None:
     peaks = {}
     for level in ("off", "medium", "high"):
         row = Detail.uniform("low").with_levels(reflection=level, tessellation="ultra")
@@ -218,7 +103,7 @@ def test_only_reflection_brings_a_glint_to_the_cornea(bench: Bench) -> None:
     assert peaks["high"] > 10 * peaks["medium"]
 
 
-def test_the_glint_lies_towards_the_sun(bench: Bench) -> None:
+def test_the_glint_lies_towards_the_sun(bench: Any) -> None:
     row = Detail.uniform("low").with_levels(reflection="high", tessellation="ultra")
     pixels = bench.picture(bench.eyes(row, sun=2.0), size=(160, 160))
     y, x = np.unravel_index(int(np.argmax(pixels[..., 0])), (160, 160))
@@ -226,7 +111,7 @@ def test_the_glint_lies_towards_the_sun(bench: Bench) -> None:
     assert y > 90
 
 
-def test_the_caustic_gathers_light_opposite_the_sun(bench: Bench) -> None:
+def test_the_caustic_gathers_light_opposite_the_sun(bench: Any) -> None:
     row = OFF.with_levels(refraction="high", caustics="high", tessellation="ultra")
     low_sun = (-math.sin(math.radians(65)), 0.0, math.cos(math.radians(65)))
     eyes = bench.eyes(row, sun=2.0, sky=0.0, toward_sun=low_sun)
@@ -234,7 +119,7 @@ def test_the_caustic_gathers_light_opposite_the_sun(bench: Bench) -> None:
     assert pixels[48, 48 + 24, 0] > 1.5 * pixels[48, 48 - 24, 0] > 0
 
 
-def test_gaze_turns_the_eye(bench: Bench) -> None:
+def test_gaze_turns_the_eye(bench: Any) -> None:
     ahead = bench.picture(bench.eyes(OFF))
     right = bench.picture(bench.eyes(OFF, gaze_yaw_deg=15.0, gaze_pitch_deg=10.0))
 
@@ -250,7 +135,7 @@ def test_gaze_turns_the_eye(bench: Bench) -> None:
     np.testing.assert_allclose(shift, [expected[1], expected[0]], atol=1.0)
 
 
-def test_the_right_eyes_maps_are_the_lefts_mirrored(bench: Bench) -> None:
+def test_the_right_eyes_maps_are_the_lefts_mirrored(bench: Any) -> None:
     row = OFF.with_levels(texture="low", tessellation="low")
     eyes = bench.eyes(row, row)
     left, right = bench.picture(eyes, 0), bench.picture(eyes, 1)
@@ -258,9 +143,7 @@ def test_the_right_eyes_maps_are_the_lefts_mirrored(bench: Bench) -> None:
     np.testing.assert_allclose(left[24:40, 8:56], right[24:40, 8:56][:, ::-1], atol=0.02)
 
 
-def test_the_upper_lid_shades_the_globe(
-    bench: Bench, average_rims: tuple[LidRims, LidRims]
-) -> None:
+def test_the_upper_lid_shades_the_globe(bench: Any, average_rims: tuple[LidRims, LidRims]) -> None:
     shaded = bench.picture(bench.eyes(OFF, sun=2.0, rims=average_rims))
     free = bench.picture(bench.eyes(OFF, sun=2.0))
     middle, top = 32 + 12, 32 + 17  # 2.6 and 3.7 mm above the axis
@@ -269,7 +152,7 @@ def test_the_upper_lid_shades_the_globe(
     assert ratio[middle - 20, 44] > 0.6
 
 
-def test_our_integrator_and_the_thesiss_sum_agree_up_to_its_bias(bench: Bench) -> None:
+def test_our_integrator_and_the_thesiss_sum_agree_up_to_its_bias(bench: Any) -> None:
     row = Detail.uniform("ultra").with_levels(texture="off", reflection="off", sclera="low")
     ours = bench.picture(bench.eyes(row, sun=2.0))[32, 48]
     many = bench.picture(bench.eyes(row, sun=2.0, subsurface_samples=200))[32, 48]
@@ -278,7 +161,7 @@ def test_our_integrator_and_the_thesiss_sum_agree_up_to_its_bias(bench: Bench) -
     assert (few > 1.02 * ours).all()
 
 
-def test_calibrated_lods_have_the_same_iris(bench: Bench) -> None:
+def test_calibrated_lods_have_the_same_iris(bench: Any) -> None:
     means = []
     for level in ("low", "medium", "high", "ultra"):
         row = Detail.uniform(level).with_levels(texture="off")
@@ -289,7 +172,7 @@ def test_calibrated_lods_have_the_same_iris(bench: Bench) -> None:
     np.testing.assert_allclose(means, np.broadcast_to(ALBEDO, (4, 3)), rtol=0.05)
 
 
-def test_the_same_eye_has_the_same_bytes(bench: Bench) -> None:
+def test_the_same_eye_has_the_same_bytes(bench: Any) -> None:
     first, second = (
         bench.picture(bench.eyes(Detail.uniform("ultra"), sun=2.0), azimuth_deg=-35)
         for _ in range(2)
@@ -297,12 +180,12 @@ def test_the_same_eye_has_the_same_bytes(bench: Bench) -> None:
     assert first.tobytes() == second.tobytes()
 
 
-def test_ultra_reflection_asks_for_the_crowd(bench: Bench) -> None:
+def test_ultra_reflection_asks_for_the_crowd(bench: Any) -> None:
     with pytest.raises(ValueError, match="reflection=ultra mirrors moving people"):
         bench.eyes(Detail.uniform("ultra"), has_crowd=False)
 
 
-def test_meshes_are_seen_when_facets_are_flat(bench: Bench) -> None:
+def test_meshes_are_seen_when_facets_are_flat(bench: Any) -> None:
     """Off has the lowest mesh's facets: fewer shades of the white than vertex normals give."""
 
     def shades(level: str) -> int:
