@@ -22,6 +22,7 @@ PLICA_MM: Final = -12.1  # the fold, a crescent open towards the pupil
 BUMP_MM: Final = (-14.3, 1.45)  # the caruncle's middle and half width along x
 MEMBRANE_START_MM: Final = 9.6
 DRAWN: Final = (0.28, 0.12)  # share of the cornea's way to nose and temple that drags the fold
+TUCKED_MM: Final = 0.3  # of the sheets' edges, below the lids
 FULL_OPENING_MM: Final = 3.0  # of the lids, at which the caruncle stands out fully
 CARUNCLE_GRID: Final = (52, 28)  # points from canthus inwards, and from lid to lid
 MEMBRANE_GRID: Final = (22, 16)
@@ -79,7 +80,7 @@ def _drawn_mm(pose: LidPose) -> float:
 
 def _beside_globe(points: Floats) -> Floats:
     """Return 1 where no globe would be seen through the sheet, 0 well inside its outline."""
-    return _ease((np.hypot(points[..., 0], points[..., 1]) - 10.75) / 0.4)
+    return _ease((np.hypot(points[..., 0], points[..., 1]) - 10.95) / 0.5)
 
 
 def _lumps(x: Floats, y: Floats) -> Floats:
@@ -102,7 +103,7 @@ def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
         _quads(MEMBRANE_GRID)[:, ::-1],
         np.zeros(a.size),
         (0.9 * _ease(a / 0.5)).ravel(),
-        np.maximum(1.0 - _ease((a - 0.1) / 0.7), _beside_globe(sheet.points_mm)).ravel(),
+        np.maximum(1.0 - _ease(a / 0.85), _beside_globe(sheet.points_mm)).ravel(),
     )
 
 
@@ -122,7 +123,7 @@ class _Sheet:
 def _sheet(corner_x: float, inner_x: float, pose: LidPose, *, grid: tuple[int, int]) -> _Sheet:
     """Span a sheet between the rims from a canthus inwards."""
     rows, columns = grid
-    a, b = np.meshgrid(np.linspace(0, 1, rows), np.linspace(-0.03, 1.04, columns), indexing="ij")
+    a, b = np.meshgrid(np.linspace(0, 1, rows), np.linspace(-0.03, 1.03, columns), indexing="ij")
     # The inner edge is a crescent around the pupil.
     crescent = inner_x + np.sign(corner_x) * 1.2 * (2 * np.clip(b, 0, 1) - 1) ** 2
     x = corner_x + (crescent - corner_x) * a
@@ -131,6 +132,7 @@ def _sheet(corner_x: float, inner_x: float, pose: LidPose, *, grid: tuple[int, i
         for curve in rim_curves(pose, samples=513)
     )
     y = lower[0] * (1 - b) + upper[0] * b
+    y += TUCKED_MM * np.clip((np.abs(b - 0.5) - 0.5) / 0.03, 0, 1) * np.sign(b - 0.5)
     z = lower[1] * (1 - b) + upper[1] * b
     opening = np.maximum(upper[0] - lower[0], 0.0)
     return _Sheet(np.stack([x, y, z], axis=-1), a, np.clip(b, 0, 1), opening)
