@@ -22,7 +22,7 @@ from renderer.unrefraction.edges import Edges
 
 Array = npt.NDArray[np.float64]
 
-VISIBLE_LIMBUS_MM: Final = 5.76  # where half of the light is sclera's, as surface.glsl draws it
+VISIBLE_LIMBUS_MM: Final = 5.85  # where half of the light is sclera's, beside the limbal ring
 RUFF_MM: Final = 0.035  # how far outside of the pupil's rim its dark lining begins to show
 MODEL_LIMBUS_MM: Final = 11.7  # the visible iris's width that the model eye stands for
 TELECENTRIC_MM: Final = 1e5  # far enough to be parallel
