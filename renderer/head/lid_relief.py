@@ -1,8 +1,7 @@
 """The thin skin of the lids as a map of its own: crepe, crow's feet, orifices, capillaries.
 
-Pure numpy. Both eyes' maps lie on top of each other in one picture. Along u runs the way around the
-fissure (from the temple over the upper lid), along v the way across the skin from the lid's inner
-edge, so that wrinkles follow the lid by themselves.
+Pure numpy. The map's axes run around the fissure and across the skin (``lid_layout``), so that
+wrinkles follow the lid by themselves.
 """
 
 from __future__ import annotations
@@ -15,49 +14,23 @@ import numpy.typing as npt
 from scipy import ndimage
 
 from renderer.body.makehuman import Floats
-from renderer.head.face_mesh import SkinPart, to_patch
-from renderer.head.lid_rims import LATERAL_MM
+from renderer.head.face_mesh import SkinPart
+from renderer.head.lid_layout import (
+    ACROSS_MM,
+    MAP_PX,
+    Layout,
+    from_outer_canthus,
+    lay_out,
+    tangent_slopes,
+)
 from renderer.textures.micro_relief import Net, Tile, net_relief, periodic_noise
 
-AROUND_MM: Final = 68.0  # what the patches' first coordinate runs over
-ACROSS_MM: Final = 17.0
-MAP_PX: Final = (512, 2048)  # of one eye: across, around; 30 texels a mm at the rim
 SLOPE_RANGE: Final = 0.8  # stored slopes run from minus to plus this
 LINES: Final = Tile(32.0, 1024)
 NETS: Final = (
     Net(cells=(58, 66), depth_mm=0.017, width_mm=0.085, bend_mm=0.12, tilt=0.05),
     Net(cells=(104, 120), depth_mm=0.009, width_mm=0.055, bend_mm=0.07, tilt=0.04),
 )
-
-
-@dataclass(frozen=True)
-class _Layout:
-    """Where each texel lies; every field is (across, around).
-
-    ``x, y`` patch space in mm; ``flat`` (2, ...) the skin laid out flat; ``stretch`` the way around
-    per mm of u; ``along, outward`` (..., 3) unit tangents; ``normal``; ``beyond`` mm from the
-    lid's outer edge; ``upper`` 0 to 1.
-    """
-
-    x: Floats
-    y: Floats
-    flat: Floats
-    stretch: Floats
-    along: Floats
-    outward: Floats
-    normal: Floats
-    around: Floats
-    across: Floats
-    beyond: Floats
-    upper: Floats
-
-
-def lid_coordinates(part: SkinPart, eye: int) -> Floats:
-    """Return (n, 2) coordinates in the map; u grows past 1 nowhere, so seams need care."""
-    around, across = part.along_mm.T
-    return np.column_stack(
-        [around / AROUND_MM, (np.clip(across / ACROSS_MM, 0.004, 0.996) + eye) / 2]
-    )
 
 
 def lid_map(
@@ -75,7 +48,7 @@ def lid_map(
     rng = np.random.Generator(np.random.PCG64(23))
     sources = _sources(rng)
     maps = [
-        _eye_map(_layout(part, eye, edge=edges_mm[eye], upper=upper[eye]), sources, eye)
+        _eye_map(lay_out(part, eye, edge=edges_mm[eye], upper=upper[eye]), sources, eye)
         for eye, part in enumerate(patches)
     ]
     return np.concatenate(maps)
@@ -118,74 +91,9 @@ def _sample(picture: Floats, x_mm: Floats, y_mm: Floats) -> Floats:
     return np.asarray(ndimage.map_coordinates(picture, at, order=1, mode="grid-wrap"))
 
 
-def _layout(part: SkinPart, eye: int, *, edge: Floats, upper: Floats) -> _Layout:
-    rows = len(edge)
-    across_mm = part.along_mm[:, 1].reshape(rows, -1)
-    local = to_patch(part.points_mm, eye).reshape(rows, -1, 3)
-    normal = part.normals.reshape(rows, -1, 3)
-    places = np.linspace(0.0, ACROSS_MM, MAP_PX[0] // 8)
-
-    def spread(values: Floats) -> Floats:
-        """Resample a patch's values (rows, along, k) to places across: (places, rows, k)."""
-        columns = [
-            np.interp(places, across_mm[i], values[i, :, k])
-            for k in range(values.shape[2])
-            for i in range(rows)
-        ]
-        return np.array(columns).reshape(values.shape[2], rows, -1).transpose(2, 1, 0)
-
-    points, normals = spread(local), spread(normal)
-    along = (np.roll(points, -1, 1) - np.roll(points, 1, 1)) * (rows / (2 * AROUND_MM))
-    along = ndimage.gaussian_filter(along, (1.0, 1.5, 0.0), mode=("nearest", "wrap", "nearest"))
-    outward = np.gradient(points, places, axis=0)
-    stretch = np.linalg.norm(along, axis=-1, keepdims=True)
-    # Laid out flat: straight on from the rim, as far as the skin's own way.
-    rim, end = points[8, :, :2], points[-1, :, :2]
-    away = (end - rim) / np.linalg.norm(end - rim, axis=1, keepdims=True)
-    flat = rim[None] + away[None] * places[:, None, None]
-    mirror = [1.0 if eye else -1.0, 1.0, 1.0]
-    fields = np.concatenate(
-        [
-            points[..., :2],
-            flat,
-            stretch,
-            along / np.maximum(stretch, 1e-6) * mirror,
-            outward / np.maximum(np.linalg.norm(outward, axis=-1, keepdims=True), 1e-6) * mirror,
-            normals,
-            np.broadcast_to(edge[None, :, None], (*points.shape[:2], 1)),
-            np.broadcast_to(upper[None, :, None], (*points.shape[:2], 1)),
-        ],
-        axis=-1,
-    )
-    row = (np.arange(MAP_PX[0]) + 0.5) / MAP_PX[0] * (len(places) - 1)
-    column = (np.arange(MAP_PX[1]) + 0.5) / MAP_PX[1] * rows
-    at = np.stack(np.meshgrid(row, column, indexing="ij"))
-    full = [
-        ndimage.map_coordinates(
-            np.concatenate([fields[..., k], fields[:, :1, k]], axis=1), at, order=1, mode="nearest"
-        )
-        for k in range(fields.shape[2])
-    ]
-    across = np.broadcast_to(row[:, None] * (ACROSS_MM / (len(places) - 1)), MAP_PX)
-    around = np.broadcast_to(column[None, :] * (AROUND_MM / rows), MAP_PX)
-    return _Layout(
-        x=full[0],
-        y=full[1],
-        flat=np.stack(full[2:4]),
-        stretch=np.maximum(full[4], 0.3),
-        along=np.stack(full[5:8], axis=-1),
-        outward=np.stack(full[8:11], axis=-1),
-        normal=np.stack(full[11:14], axis=-1),
-        around=around,
-        across=across,
-        beyond=across - full[14],
-        upper=full[15],
-    )
-
-
-def _eye_map(place: _Layout, sources: _Sources, eye: int) -> npt.NDArray[np.uint8]:
+def _eye_map(place: Layout, sources: _Sources, eye: int) -> npt.NDArray[np.uint8]:
     height = _height(place, sources, eye)
-    slope_x, slope_y = _tangent_slopes(height, place)
+    slope_x, slope_y = tangent_slopes(height, place)
     texel = ACROSS_MM / MAP_PX[0]
     near = ndimage.gaussian_filter(height, 0.28 / texel, mode=("nearest", "wrap"))
     openness = np.clip(1.0 - np.maximum(near - height, 0.0) / 0.07, 0.0, 1.0)
@@ -210,12 +118,12 @@ def _ease(x: Floats) -> Floats:
     return np.asarray(x * x * (3 - 2 * x))
 
 
-def _height(place: _Layout, sources: _Sources, eye: int) -> Floats:
+def _height(place: Layout, sources: _Sources, eye: int) -> Floats:
     """Return the relief in mm."""
     shift = 13.7 * eye
     lines, s, w = sources.lines, 1.25 * place.around, place.across
     wander = 0.5 * _sample(sources.coarse, 0.9 * place.flat[0] + shift, 0.9 * place.flat[1])
-    radius, angle = _from_outer_canthus(place)
+    radius, angle = from_outer_canthus(place)
     fan = np.exp(-((angle / 1.25) ** 4)) * _ease((radius - 0.8) / 2.5) * (place.x > 10.0)
     lid = 1.0 - fan
     skin = _ease((place.beyond + 0.25) / 0.5)
@@ -242,13 +150,13 @@ def _height(place: _Layout, sources: _Sources, eye: int) -> Floats:
     return np.asarray(height * skin + (1 - skin) * _margin_relief(place, sources, shift))
 
 
-def _margin_relief(place: _Layout, sources: _Sources, shift: float) -> Floats:
+def _margin_relief(place: Layout, sources: _Sources, shift: float) -> Floats:
     """Return the lid margin's relief in mm: nearly smooth, with a row of glands' openings."""
     soft = 0.006 * _sample(sources.noise, place.around + shift, place.across)
     return np.asarray(soft - 0.022 * _orifices(place))
 
 
-def _orifices(place: _Layout) -> Floats:
+def _orifices(place: Layout) -> Floats:
     """Return the meibomian glands' openings 0 to 1: one a mm, in front of the wet edge."""
     number = np.round(place.around / 1.05)
     jitter = np.sin(number * 12.9898) * 0.22
@@ -258,25 +166,7 @@ def _orifices(place: _Layout) -> Floats:
     return np.asarray(clear * np.exp(-(along**2 + across**2) / 0.10**2))
 
 
-def _from_outer_canthus(place: _Layout) -> tuple[Floats, Floats]:
-    """Return distance in mm from the outer canthus and angle from the temple's direction."""
-    dx, dy = place.x - LATERAL_MM[0] + 1.5, place.y - LATERAL_MM[1]
-    return np.hypot(dx, dy), np.arctan2(dy, dx)
-
-
-def _tangent_slopes(height: Floats, place: _Layout) -> tuple[Floats, Floats]:
-    """Return slopes along the horizontal and the upright tangent that the skin's shader uses."""
-    step = AROUND_MM / MAP_PX[1]
-    d_around = (np.roll(height, -1, 1) - np.roll(height, 1, 1)) / (2 * step) / place.stretch
-    d_across = np.gradient(height, ACROSS_MM / MAP_PX[0], axis=0)
-    gradient = d_around[..., None] * place.along + d_across[..., None] * place.outward
-    n = place.normal
-    t = np.stack([n[..., 2], np.zeros(n.shape[:2]), -n[..., 0]], axis=-1)
-    t /= np.maximum(np.linalg.norm(t, axis=-1, keepdims=True), 1e-3)
-    return (gradient * t).sum(-1), (gradient * np.cross(n, t)).sum(-1)
-
-
-def _blood(place: _Layout, sources: _Sources, eye: int) -> Floats:
+def _blood(place: Layout, sources: _Sources, eye: int) -> Floats:
     """Return the blood in the skin about its mean: blotches and fine vessels in patches."""
     shift = 7.3 + 11.9 * eye
     x, y = place.flat

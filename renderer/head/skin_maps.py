@@ -14,7 +14,8 @@ import numpy.typing as npt
 from renderer.cache import cached_array
 from renderer.head.buffers import TilePyramid
 from renderer.head.face_mesh import FaceMesh
-from renderer.head.lid_relief import ACROSS_MM, MAP_PX, SLOPE_RANGE, lid_map
+from renderer.head.lid_layout import ACROSS_MM, MAP_PX
+from renderer.head.lid_relief import SLOPE_RANGE, lid_map
 from renderer.head.skin import TILE_MM
 from renderer.textures.micro_relief import (
     FACE_NETS,

@@ -17,7 +17,7 @@ from renderer.head.face_mesh import FaceMesh, SkinPart, face_mesh, triangles_of
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import hair_cap
 from renderer.head.lid_fit import ALONG, AROUND, grid_quads
-from renderer.head.lid_relief import lid_coordinates
+from renderer.head.lid_layout import lid_coordinates
 from renderer.head.skin import SCALP, detail_coordinates, paint
 
 SPARSE_ROW: Final = 29  # of the lid patches: from here on, every other column will do

@@ -47,9 +47,9 @@ void main() {
     v_diffuse = in_diffuse;
     v_surface = vec4(gloss, strength, sun, wet);
     v_detail = in_detail;
-    // Where the view grazes, relief is finer than pixels. Where two reliefs mix, their variances add
-    // up to one's (Heitz and Neyret 2018), or a band of smooth skin would lie between them.
-    v_lid = vec4(in_lid, smoothstep(0.05, 0.4, dot(n, v)),
+    // Where the view grazes, relief is finer than pixels: less of it shows. Where two reliefs mix, their
+    // variances add up to one's (Heitz and Neyret 2018), or smooth skin would lie between them.
+    v_lid = vec4(in_lid, mix(0.3, 1.0, smoothstep(0.05, 0.4, dot(n, v))),
         vec2(1.0 - in_lid, in_lid) * inversesqrt(1.0 - 2.0 * in_lid * (1.0 - in_lid)));
     gl_Position = u_projection * u_view_matrix * vec4(in_position, 1.0);
 }

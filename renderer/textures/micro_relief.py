@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 Field = npt.NDArray[np.float64]
 
-SKETCH_CELLS: Final = (-1, 0, 1)
+NEIGHBOURS: Final = (-1, 0, 1)
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Net:
 
 # Of the face: polygons of about 0.55 mm, crossed by a finer net of 0.26 mm.
 FACE_NETS: Final = (
-    Net(cells=(54, 62), depth_mm=0.017, width_mm=0.09, bend_mm=0.16, tilt=0.055),
+    Net(cells=(54, 62), depth_mm=0.015, width_mm=0.09, bend_mm=0.16, tilt=0.055),
     Net(cells=(112, 128), depth_mm=0.013, width_mm=0.055, bend_mm=0.08, tilt=0.05),
 )
 
@@ -81,8 +81,8 @@ def _polygons(rng: np.random.Generator, tile: Tile, net: Net) -> tuple[Field, Fi
     cell_x, cell_y = np.floor(x).astype(int), np.floor(y).astype(int)
     nearest, second = np.full((2, size, size), 9e9)
     plateau = np.zeros((size, size))
-    for dy in SKETCH_CELLS:
-        for dx in SKETCH_CELLS:
+    for dy in NEIGHBOURS:
+        for dx in NEIGHBOURS:
             at = ((cell_y + dy) % rows, (cell_x + dx) % columns)
             away_x = (x - cell_x - dx - point[at][..., 0]) * edge[0]
             away_y = (y - cell_y - dy - point[at][..., 1]) * edge[1]
