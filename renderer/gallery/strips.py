@@ -1,7 +1,7 @@
 """The gallery's table of strips: the LoDs, the effects, the iris and the thesis's own forms.
 
 What moves the head's geometry or the sun is in ``renderer.gallery.scenes``. Adding a strip is
-adding a row; docs/gallery.md says what to look at in each.
+adding a row; page.md says what to look at in each.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""All strips of the gallery in the order of docs/gallery.md."""
+"""All strips of the gallery. page.md says what to look at in each."""
 
 from __future__ import annotations
 

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from study.commands.options import size
 
+if TYPE_CHECKING:
+    from renderer.gallery.strips import Strip
+
 HELP = "draw the gallery or the contact sheets"
 DESCRIPTION = (
-    "Draw the strips of docs/gallery.md: LoDs, effects, irises, sun, gaze, the thesis's own forms. "
-    "A strip that is there and current is not drawn again; an interrupted run goes on where it "
-    "stopped."
+    "Draw strips of stills (LoDs, effects, irises, sun, gaze, the thesis's own forms) and the page "
+    "that explains them, README.md in the same folder. A strip that is there and current is not "
+    "drawn again; an interrupted run goes on where it stopped."
 )
 
 
@@ -50,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--certificate",
         type=Path,
-        default=Path("out/certificate"),
+        default=Path("out/certification"),
         metavar="DIR",
         help="folder that ocularist certify has written its figures to (default: %(default)s)",
     )
@@ -69,15 +74,25 @@ def run(options: argparse.Namespace) -> int:
             print(f"{strip.name:20} {strip.title}")
         return 0
     folder = options.out or Path("out/sheets" if options.sheets else "out/gallery")
+    kind = "png" if options.png else "jpg"
     began = time.monotonic()
     for strip, path, is_new in make_strips(
-        wanted,
-        folder,
-        size=options.size,
-        kind="png" if options.png else "jpg",
-        anew=bool(options.only),
+        wanted, folder, size=options.size, kind=kind, anew=bool(options.only)
     ):
         spent_s, began = time.monotonic() - began, time.monotonic()
         said = f"{spent_s:.0f} s, {path.stat().st_size / 1024:.0f} KB" if is_new else "is current"
         print(f"{strip.name:20} {path}  {said}", flush=True)
+    if not options.sheets:
+        print(_write_page(strips, folder, kind))
     return 0
+
+
+def _write_page(strips: Sequence[Strip], folder: Path, kind: str) -> Path:
+    from renderer.gallery.page import PAGE, measured_strands, page_of
+    from renderer.manifest import write_atomically
+
+    names = {strip.name: f"{strip.name}.{kind}" for strip in strips}
+    files = {name: file for name, file in names.items() if (folder / file).is_file()}
+    page = page_of(strips, files, measured_strands())
+    write_atomically(folder / PAGE, page.encode())
+    return folder / PAGE

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import itertools
 import json
+import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
@@ -13,9 +15,10 @@ from PIL import Image
 
 from renderer.clip import DISTANCES, IRIS_COLOURS, ClipSpec
 from renderer.detail import EFFECTS, STANDARD_LODS, Detail
-from renderer.gallery import making, strips
+from renderer.gallery import making, page, strips
 from renderer.gallery.drawing import CAPTION_PX, GAP_PX, PAPER, TITLE_PX, draw_strip
 from renderer.gallery.making import chosen, make_strips
+from renderer.gallery.page import page_of
 from renderer.gallery.sheets import AZIMUTHS_DEG, SHEETS
 from renderer.gallery.shots import (
     Captioned,
@@ -28,6 +31,7 @@ from renderer.gallery.shots import (
     spec_of,
 )
 from renderer.gallery.table import gallery_strips
+from renderer.unrefraction.refusal import PhotographError
 
 SIZE = (64, 36)
 
@@ -182,9 +186,58 @@ def test_an_unknown_strip_is_named_with_those_that_exist(tmp_path: Path) -> None
 
 
 def test_a_certificate_is_shown_where_there_is_one(tmp_path: Path) -> None:
-    Image.new("RGB", (40, 20), "red").save(tmp_path / "iris_flip.png")
+    Image.new("RGB", (40, 20), "red").save(tmp_path / "blue-front.png")
+    figures = {
+        "pictures": [{"case": {"name": "blue-front"}}],
+        "aims": [
+            {"words": "RMS in the iris", "reached_percent": 2.34, "is_met": True},
+            {"words": "furnace", "reached_percent": 9.0, "is_met": False},
+        ],
+    }
+    (tmp_path / "certification.json").write_text(json.dumps(figures))
     (strip,) = chosen(gallery_strips(tmp_path), ["certificate"])
+    assert strip.title == "Beside a path tracer: 1 of 2 aims met; RMS in the iris: 2.3 %"
     ((caption, pixels),) = strip.tiles(Painter(SIZE).take)
-    assert caption == "iris flip"
+    assert caption == "blue front"
     assert pixels.shape == (20, 40, 3)
     assert "certificate" not in [strip.name for strip in gallery(tmp_path)]
+
+
+def test_what_shows_no_eye_is_no_photograph(tmp_path: Path) -> None:
+    (strip,) = chosen(gallery(tmp_path), ["photograph"])
+    with pytest.raises(PhotographError, match="no eye found"):
+        strip.tiles(Painter(SIZE).take)
+
+
+def test_the_page_shows_every_strip_and_no_other(tmp_path: Path) -> None:
+    table = gallery(tmp_path)
+    files = {strip.name: f"{strip.name}.jpg" for strip in table}
+    text = page_of(table, files, "| measured |")
+    shown = re.findall(r"^!\[(.+)\]\((.+)\.jpg\)$", text, flags=re.MULTILINE)
+    assert sorted(shown) == sorted((strip.title, strip.name) for strip in table)
+    assert "| measured |" in text
+    assert not re.search(r"^@", text, flags=re.MULTILINE)
+
+
+def test_the_page_leaves_out_what_is_not_there(tmp_path: Path) -> None:
+    text = page_of(gallery(tmp_path), {"sun": "sun.png"}, "")
+    assert re.findall(r"\]\((.+)\)", text) == ["sun.png"]
+    assert "bright side of the iris" in text
+    assert "## Light, gaze, lids" in text
+    assert "## What each effect does" not in text
+    assert "upper lid" not in text
+    assert "## What still gives ultra away" in text
+
+
+def test_the_page_measures_strands_on_the_irises_it_shows(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    line = np.linspace(-1.0, 1.0, 512, dtype=np.float32)
+    rings = 0.2 + 0.1 * np.sin(140 * np.arctan2(line[:, None], line[None, :]))
+    albedo = rings.astype(np.float32)[..., None].repeat(3, axis=2)
+    drawn = SimpleNamespace(albedo=albedo)
+    monkeypatch.setattr(page, "iris_maps", lambda *_iris, **_size: drawn)
+    rows = page.measured_strands().splitlines()
+    assert rows[0] == "|  | photographs | blue, seed 1 | brown, seed 1 |"
+    assert rows[3].startswith("| spacing | 91 to 117 µm, bundles 205 to 235 | 20")
+    assert len(rows) == 2 + len(page.PHOTOGRAPHED)
