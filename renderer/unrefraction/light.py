@@ -33,15 +33,25 @@ TOO_STEEP: Final = 0.7  # of the logarithm: no light falls off further over an i
 
 @dataclass(frozen=True)
 class Limbus:
-    """The veil's shape: share of iris = 1 / (1 + exp((r - middle) / width)), r on the surface."""
+    """The veil's shape: share of iris = 1 / (1 + exp((r - middle) / width)), r on the surface.
+
+    Half-way the limbal ring dims both iris and veil to ``ring``; 1 is none.
+    """
 
     middle_mm: float
     width_mm: float
+    ring: float = 1.0
 
     def clear(self, surface_mm: Field) -> Field:
         """Return the share of light that comes from the iris."""
         far = np.clip((surface_mm - self.middle_mm) / self.width_mm, -30, 30)
         return np.asarray(1.0 / (1.0 + np.exp(far)), np.float32)
+
+    def dimmed(self, surface_mm: Field) -> Field:
+        """Return the share of light that the limbal ring leaves."""
+        share = self.clear(surface_mm)
+        edge = 4.0 * share * (1.0 - share)
+        return np.asarray(1.0 + (self.ring - 1.0) * edge * edge, np.float32)
 
 
 def find_limbus(colour: Field, texels: Texels) -> tuple[Limbus, Field]:
@@ -65,16 +75,18 @@ def find_limbus(colour: Field, texels: Texels) -> tuple[Limbus, Field]:
         return Limbus(5.76, 0.15), SCLERA
 
     def error(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        iris, slope, sclera, middle, width = values
+        iris, slope, sclera, middle, width, ring = values
         share = 1 / (1 + np.exp(np.clip((at - middle) / width, -30, 30)))
-        return np.asarray(share * (iris + slope * (at - 5.3)) + (1 - share) * sclera - shade)
+        dimmed = 1 + (ring - 1) * (4 * share * (1 - share)) ** 2
+        drawn = dimmed * (share * (iris + slope * (at - 5.3)) + (1 - share) * sclera)
+        return np.asarray(drawn - shade)
 
     fit = optimize.least_squares(
         error,
-        [shade[0], 0.0, shade[-1], 5.76, 0.15],
-        bounds=([0, -0.3, 0, 5.4, 0.04], [2, 0.0, 4, 6.0, 0.35]),
+        [shade[0], 0.0, shade[-1], 5.76, 0.15, 0.8],
+        bounds=([0, -0.3, 0, 5.4, 0.04, 0.3], [2, 0.0, 4, 6.0, 0.35, 1.0]),
     )
-    limbus = Limbus(float(fit.x[3]), float(fit.x[4]))
+    limbus = Limbus(*(float(v) for v in fit.x[3:]))
     outside = r > limbus.middle_mm + 3.0 * limbus.width_mm
     white = np.median(light[outside], axis=0) if outside.sum() > 20 else curve[known][-1]
     return limbus, np.asarray(white, np.float32)
@@ -85,7 +97,8 @@ def lift_veils(colour: Field, texels: Texels, *, limbus: Limbus, white: Field) -
     inner = colour[texels.radius_mm < 0.8 * PUPIL_RADIUS_MM]
     veil = np.percentile(inner, VEIL_PERCENTILE, axis=0).astype(np.float32)
     share = np.maximum(limbus.clear(texels.surface_mm), 0.2)[..., None]
-    bare = (colour - (1.0 - share) * white) / share - veil
+    bright = colour / limbus.dimmed(texels.surface_mm)[..., None]
+    bare = (bright - (1.0 - share) * white) / share - veil
     return np.maximum(bare / np.maximum(texels.transmitted, 0.5)[..., None], 1e-4)
 
 
