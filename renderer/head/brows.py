@@ -11,8 +11,8 @@ from renderer.head.lashes import Strands, joined
 from renderer.head.lid_fit import Socket
 
 COUNT: Final = 540
-VELLUS: Final = 260  # fine pale hairs at the outline and beyond
-POINTS: Final = 8
+VELLUS: Final = 220  # fine pale hairs at the outline and beyond
+POINTS: Final = 6
 BROW_COLOUR: Final = (0.058, 0.035, 0.022)
 VELLUS_COLOUR: Final = (0.34, 0.23, 0.16)
 # The brow's middle line from nose to temple: x, y, half width in mm; direction of growth in degrees

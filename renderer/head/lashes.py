@@ -11,14 +11,18 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.head.lid_fit import LidPatch
 
-POINTS: Final = 14
+POINTS: Final = 12
 SHADOW_POINTS: Final = 5
 SUNK_MM: Final = 0.3  # roots lie in the skin
 OWN_SKIN: Final = 0.3  # what the lid's skin says against the globe beneath, about a lash's frame
+CLEAR_MM: Final = 0.25  # hairs keep so far off the skin
+MOST_BEND_MM: Final = 3.0  # in each of BEND_STEPS
+BEND_STEPS: Final = 4
 SHADOW_MM: Final = 0.8  # width of the soft shadow at a root
 COLOUR: Final = (0.062, 0.037, 0.024)  # dark brown; tips let more light through (fibre.glsl)
 
@@ -184,8 +188,37 @@ def _hairs(lid: LidPatch, row: LashRow, growth: _Growth) -> Strands:
     step = (growth.length_mm / (POINTS - 1))[:, None, None]
     way = np.cumsum((direction[:, 1:] + direction[:, :-1]) / 2 * step, axis=1)
     points = root[:, None] + np.concatenate([np.zeros((row.count, 1, 3)), way], axis=1)
+    points = _off_the_skin(lid, _gathered(points, growth), frame[:, 2])
     colour = np.array(COLOUR) * growth.tone[:, None]
-    return Strands(_gathered(points, growth), growth.width_mm, colour)
+    return Strands(points, growth.width_mm, colour)
+
+
+def _off_the_skin(lid: LidPatch, points: Floats, normal: Floats) -> Floats:
+    """Bend hairs (n, k, 3) whose way leads into the skin away from it, along their roots' normals.
+
+    Skin bulges where a lid folds: under the eye that looks down, or over the open one.
+    """
+    skin = lid.points_mm[:, lid.rim_row + 1 :]
+    around = np.roll(skin, -1, axis=0) - np.roll(skin, 1, axis=0)
+    facing = _unit(np.cross(around, np.gradient(skin, axis=1)) + 1e-12)
+    facing *= np.sign((facing * skin).sum(axis=2, keepdims=True))
+    tree, flat_facing = cKDTree(skin.reshape(-1, 3)), facing.reshape(-1, 3)
+    s = np.linspace(0, 1, points.shape[1])
+    free = s > 0.15  # the root itself lies in the skin
+    length = _length(points)
+    for _ in range(BEND_STEPS):
+        _, near = tree.query(points[:, free].reshape(-1, 3))
+        away = points[:, free].reshape(-1, 3) - skin.reshape(-1, 3)[near]
+        height = (away * flat_facing[near]).sum(axis=1).reshape(len(points), -1)
+        lacking = (CLEAR_MM * np.minimum(4 * s[free], 1.0) - height) / s[free]
+        bend = np.clip(lacking.max(axis=1), 0.0, MOST_BEND_MM)
+        way = points - points[:, :1] + (bend[:, None] * s)[..., None] * normal[:, None]
+        points = points[:, :1] + way * (length / _length(way))[:, None, None]
+    return points
+
+
+def _length(points: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(np.diff(points, axis=1), axis=2).sum(axis=1))
 
 
 def _through(values: Floats, s: Floats) -> Floats:

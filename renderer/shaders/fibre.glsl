@@ -49,6 +49,6 @@ FibreLight fibre_light(vec3 t, vec3 v, vec3 colour, float along, float sun) {
     // The sky above as one wide light: the sheen that hairs in the shade have.
     float under_sky = 0.5 * (asin(clamp(t.y, -1.0, 1.0)) + asin(sin_v));
     light.glint = (mirrored + returned) * irradiance * spread
-        + (0.006 + 0.018 * exp(-under_sky * under_sky * 5.0)) * above;
+        + (0.005 + 0.012 * exp(-under_sky * under_sky * 5.0)) * above;
     return light;
 }

@@ -125,6 +125,19 @@ def test_no_lash_enters_the_globe(lid: LidPatch, angle_deg: float) -> None:
     assert np.linalg.norm(points, axis=1).min() > GLOBE_RADIUS_MM
 
 
+def test_lashes_bend_away_from_skin_that_bulges_in_their_way(lid: LidPatch) -> None:
+    """Push the skin under the eye forwards until it would swallow the lower lashes."""
+    beyond = lid.across_mm - lid.across_mm[:, lid.rim_row][:, None]
+    push = 7.0 * np.clip(beyond / 5.0, 0, 1) * (lid.is_upper < 0.5)[:, None]
+    bulging = replace(lid, points_mm=lid.points_mm + push[..., None] * [0.0, 0.0, 1.0])
+    lower = upper_and_lower(grow_lashes(bulging, rng())[1])[1]
+    skin = bulging.points_mm[:, lid.rim_row + 1 :].reshape(-1, 3)
+    tips = lower[:, 4:].reshape(-1, 3)
+    near = np.array([np.argmin(((skin - tip) ** 2).sum(axis=1)) for tip in tips[::7]])
+    height = tips[::7, 2] - skin[near, 2]
+    assert (height > -0.2).mean() > 0.88
+
+
 def test_tips_of_a_tuft_meet_but_roots_do_not(hairs: Strands) -> None:
     upper, _ = upper_and_lower(hairs)
     order = np.argsort(upper[:, 0, 0])
