@@ -69,6 +69,9 @@ void main() {
     if (dry < 0.99) lobes += (1.0 - dry) * min(gaussian_lobe(dot(n, h), 0.13), 300.0);
     vec3 mirrored = u_sun_irradiance * (max(v_surface.y, 0.0) * cosine * lobes);
     vec3 sheen = v_sheen * (open * max(1.0 + 2.0 * upwards, 0.0));
-    float cover = 1.0 - (1.0 - dry) * (1.0 - lid);
-    out_radiance = vec4(albedo * max(diffuse, vec3(0.0)) + mirrored + sheen, cover);
+    // Clamped: at edges of triangles varyings are extrapolated to the pixel's middle.
+    float cover = clamp(1.0 - (1.0 - dry) * (1.0 - lid), 0.0, 1.0);
+    // At a sample beside its triangle's edge, values are carried on past the triangle's own.
+    vec3 radiance = max(albedo * max(diffuse, vec3(0.0)) + mirrored + sheen, vec3(0.0));
+    out_radiance = vec4(radiance, clamp(cover, 0.0, 1.0));
 }
