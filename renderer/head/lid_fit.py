@@ -20,6 +20,7 @@ from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim, rim_shares, smoot
 from renderer.head.lid_skin import Columns, lower_skin, upper_skin
 
 TUCK_MM: Final = 1.6  # from the inner edge back to the patch's innermost ring
+OFF_GLOBE_TUCK_MM: Final = 2.0  # more of it at the canthi, where nothing is close behind
 MARGIN_MM: Final = 1.75  # lid thickness at the rim
 MARGIN_TURN: Final = (0.5, 0.1)  # of the margin against the globe's normal, lower and upper lid
 MEETING_MM: Final = 3.5  # lids that are nearer to each other turn their margins face to face
@@ -161,7 +162,11 @@ def _margin_rows(inner: Floats, outward: Floats, *, canthus: Floats) -> list[Flo
     # The first rings run straight back into the globe, or at the canthi under the conjunctiva: no
     # light shines between lid and globe, and from the front nothing of them shows.
     back = np.array([0.0, 0.0, 1.0])
-    rows = [inner - TUCK_MM * back, inner - 0.15 * (0.5 * radial + 0.5 * back)]
+    off = np.clip(np.linalg.norm(inner, axis=1, keepdims=True) - 12.2, 0.0, 1.0)
+    rows = [
+        inner - (TUCK_MM + OFF_GLOBE_TUCK_MM * off) * back,
+        inner - 0.15 * (0.5 * radial + 0.5 * back),
+    ]
     rows += [inner + margin * (thick * share)[:, None] for share in (0.12, 0.45, 0.8)]
     rows.append(edge + np.column_stack([outward * 0.1, np.zeros(AROUND)]))
     return rows
