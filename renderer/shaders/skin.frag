@@ -71,7 +71,6 @@ void main() {
     vec3 sheen = v_sheen * (open * max(1.0 + 2.0 * upwards, 0.0));
     // Clamped: at edges of triangles varyings are extrapolated to the pixel's middle.
     float cover = clamp(1.0 - (1.0 - dry) * (1.0 - lid), 0.0, 1.0);
-    // At a sample beside its triangle's edge, values are carried on past the triangle's own.
     vec3 radiance = max(albedo * max(diffuse, vec3(0.0)) + mirrored + sheen, vec3(0.0));
-    out_radiance = vec4(radiance, clamp(cover, 0.0, 1.0));
+    out_radiance = vec4(radiance, cover);
 }
