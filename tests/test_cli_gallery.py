@@ -24,9 +24,9 @@ def test_one_strip_is_drawn_from_real_frames(
     # Three tiles of 80 x 48: two eyes that nearly agree, and their difference around mid-grey.
     ours, painted, change = (pixels[44:92, x : x + 80] for x in (6, 92, 178))
     assert ours.std() > 20.0, "an eye has dark and bright parts"
-    assert 0.0 < np.abs(ours - painted).mean() < 10.0
+    assert 0.0 < np.abs(ours - painted).mean() < 20.0
     np.testing.assert_allclose(
-        change, np.clip(128.0 + 8.0 * (painted - ours), 0.0, 255.0), atol=0.6
+        change, np.clip(128.0 + 2.0 * (painted - ours), 0.0, 255.0), atol=0.6
     )
 
 

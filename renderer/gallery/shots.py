@@ -47,7 +47,7 @@ class Shot:
     enlarge: int = 1
     wireframe: bool = False
     minus: ClipSpec | None = None
-    gain: float = 8.0
+    gain: float = 1.0
 
 
 Captioned = tuple[str, Pixels]

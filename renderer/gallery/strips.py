@@ -137,7 +137,7 @@ def _sums() -> list[Shot]:
         Shot(f"left sum, {count} samples", spec, LEFT_IRIS) for count, spec in sums.items()
     ]
     return pictures + [
-        Shot(f"8 x ({count} samples - ours)", spec, LEFT_IRIS, minus=left_only())
+        Shot(f"2 x ({count} samples - ours)", spec, LEFT_IRIS, minus=left_only(), gain=2.0)
         for count, spec in sums.items()
     ]
 
@@ -147,7 +147,7 @@ def _painted() -> list[Shot]:
     return [
         Shot("computed", left_only()),
         Shot("painted by the thesis's recipe", painted),
-        Shot("8 x (painted - computed)", painted, minus=left_only()),
+        Shot("2 x (painted - computed)", painted, minus=left_only(), gain=2.0),
     ]
 
 
