@@ -28,7 +28,8 @@ AROUND_COLUMN: Final = 11  # of the rows: the way around the fissure in the lids
 class Surface:
     """One lit surface: its geometry for bakes, and its mesh, or its fine and its distant mesh.
 
-    ``veil`` holds the triangles that let something through, if there are such; ``mesh`` does not.
+    ``veil`` holds triangles of which some let something through, if there are such; ``mesh`` holds
+    those alone that do not.
     """
 
     points_mm: Floats
@@ -119,10 +120,12 @@ def _skin_rows(part: SkinPart, albedo: Floats, eye: int | None) -> Floats:
 
 
 def _by_cover(part: SkinPart) -> tuple[Indices, Indices]:
-    """Part triangles into those that hide what is behind and those that let something through."""
+    """Return the triangles that hide what is behind, and all that are to be seen.
+
+    The second go over the first: no sample stays empty where both kinds meet.
+    """
     cover = part.lid[part.triangles]
-    solid = cover.min(axis=1) > 0.999
-    return part.triangles[solid], part.triangles[~solid & (cover.max(axis=1) > 0.001)]
+    return part.triangles[cover.min(axis=1) > 0.999], part.triangles[cover.max(axis=1) > 0.001]
 
 
 def _near_patch(eye: int) -> Indices:
