@@ -18,7 +18,7 @@ Mask = npt.NDArray[np.bool_]
 
 UNVEILED_MM: Final = 5.0  # from the axis, on the maps: no limbus veils this from any side
 LEAST_SEEN: Final = 0.45
-LEAST_DETAIL: Final = 0.02
+LEAST_DETAIL: Final = 0.04
 CLIPPED: Final = 0.97
 MOST_CLIPPED: Final = 0.12
 LEAST_WHITE: Final = 0.03
@@ -60,5 +60,5 @@ def check_detail(photograph: Photograph, detail: float) -> None:
     if detail < LEAST_DETAIL:
         raise PhotographError(
             f"{photograph.name}: blurred, the iris's fibres vary by {detail:.1%} where sharp "
-            f"photographs show 5 % and more; at least {LEAST_DETAIL:.0%} is needed"
+            f"photographs show 10 % and more; at least {LEAST_DETAIL:.0%} is needed"
         )
