@@ -119,9 +119,12 @@ class Head:
         )
         clip = projection @ view_matrix
         camera = np.asarray(camera_mm, dtype=float)
-        with blending(self.gl):
-            for veil in self._veils:  # conjunctiva that fades into the sclera beneath
+        # Conjunctiva fades into the sclera beneath, sample by sample: its solid part stands there
+        # already, and the samples of an edge between the two belong to the one or the other.
+        with blending(self.gl, by_sample=True):
+            for veil in self._veils:
                 veil.draw(self._programs["skin"], clip, camera_mm=camera)
+        with blending(self.gl):
             for mesh, _ in self._hair:
                 mesh.draw(program, clip, camera_mm=camera)
 

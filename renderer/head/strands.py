@@ -32,15 +32,17 @@ LOCK: Final = 8  # hairs of the scalp that one ribbon stands for
 
 
 @contextmanager
-def blending(gl: moderngl.Context) -> Iterator[None]:
+def blending(gl: moderngl.Context, *, by_sample: bool = False) -> Iterator[None]:
     """Let hairs cover what was drawn before by their alpha; they hide nothing from each other.
 
-    A pixel's four samples get the same alpha, which hair.frag knows better than four samples do.
+    A pixel's four samples get the same alpha, which hair.frag knows better than four samples do;
+    with ``by_sample`` only those that a triangle covers.
     The framebuffer's own alpha stays what it was: full.
     """
     gl.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
     gl.blend_func = ALPHA_KEEPING_TARGET
-    gl.disable_direct(MULTISAMPLE)
+    if not by_sample:
+        gl.disable_direct(MULTISAMPLE)
     target = gl.fbo
     target.depth_mask = False
     try:
