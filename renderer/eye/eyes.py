@@ -24,7 +24,7 @@ from renderer.eye.flat_iris import flat_iris
 from renderer.eye.lids import LidRims
 from renderer.eye.maps import iris_values, sclera_values, tissue_constants
 from renderer.eye.silhouette import Silhouette, detail_mesh, hull_mesh, vertex_array
-from renderer.eye.subsurface import DEPTH_MARGIN, MAX_DEPTH_MM
+from renderer.eye.subsurface import DEPTH_MARGIN, MAX_DEPTH_MM, MIN_LIGHT_COSINE
 from renderer.eye.sunlight import (
     RELIEF_SHADE_PX,
     relief_shade_map,
@@ -166,7 +166,9 @@ class Eyes:
         values = {
             **placed,
             **cubes,
-            **iris_values(self._gl, spec, detail),
+            **iris_values(
+                self._gl, spec, detail, sun_eye=np.asarray(light.sky.sun_direction) @ turn
+            ),
             **sclera_values(self._gl, spec, detail),
             **sunlight_values(
                 self._gl,
@@ -213,6 +215,7 @@ def eye_constants(detail: Detail, spec: ClipSpec) -> dict[str, int | float]:
         "CAUSTICS_PAINTED": int(spec.caustic_pattern == "painted"),
         "MAX_DEPTH_MM": MAX_DEPTH_MM,
         "DEPTH_MARGIN": DEPTH_MARGIN,
+        "MIN_LIGHT_COSINE": MIN_LIGHT_COSINE,
     }
 
 

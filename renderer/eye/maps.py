@@ -14,6 +14,7 @@ import numpy.typing as npt
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye import sclera
+from renderer.eye.anatomy import CORNEA_IOR
 from renderer.eye.micro_relief import SLOPE_RANGE, TILE_MM, micro_relief_tile
 from renderer.eye.sclera import HALF_SIZE_MM, sclera_maps
 from renderer.eye.subsurface import subsurface_gain
@@ -36,8 +37,8 @@ THICKNESS_PX: Final = {"high": 512, "ultra": 1024}  # finer than the nodes of ea
 MULTIPLE_SHARE: Final = 0.45  # of the reflectance: light scattered more than once, a smooth floor
 
 
-def iris_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail) -> Values:
-    """Return the iris's textures and colours for a LoD."""
+def iris_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail, *, sun_eye: Array) -> Values:
+    """Return the iris's textures and colours for a LoD; ``sun_eye`` (3,) points towards the sun."""
     size = int(detail.setting("texture", "iris_map_px"))
     source = iris_of(spec)
     maps, height = source.maps(size), source.maps(min(size, HEIGHT_PX)).height_mm
@@ -49,7 +50,7 @@ def iris_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail) -> Values:
         "u_relief_mm": (highest, float(height[_tissue(len(height))].mean())),
         "u_iris_mean": source.mean_albedo,
         "u_pupil_mm": spec.pupil_mm,
-    } | _subsurface_values(gl, source, detail)
+    } | _subsurface_values(gl, source, detail, sun_eye)
 
 
 def _filled(height_mm: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
@@ -94,8 +95,12 @@ def tissue_constants() -> dict[str, float]:
     }
 
 
-def _subsurface_values(gl: moderngl.Context, source: Iris, detail: Detail) -> Values:
+def _subsurface_values(
+    gl: moderngl.Context, source: Iris, detail: Detail, sun_eye: Array
+) -> Values:
     """Return the layers, their coefficients and the gain that ties them to the map's colour."""
+    is_bent = {detail.refraction, detail.caustics} & {"high", "ultra"}
+    across = -sun_eye[:2] / (CORNEA_IOR if is_bent else 1.0)
     layers = source.maps(THICKNESS_PX.get(detail.subsurface, 1)).thickness_mm
     mean = source.mean_thickness_mm.astype(np.float64)
     tissue = source.tissue
@@ -104,6 +109,8 @@ def _subsurface_values(gl: moderngl.Context, source: Iris, detail: Detail) -> Va
         "u_sigma_s": tissue.sigma_s.T,
         "u_sigma_t": tissue.sigma_t.T,
         "u_anisotropy": tissue.anisotropy,
-        "u_subsurface_gain": subsurface_gain(mean, tissue),
+        "u_subsurface_gain": subsurface_gain(
+            mean, tissue, light_eye=(float(across[0]), float(across[1]))
+        ),
         "u_multiple_share": MULTIPLE_SHARE,
     }

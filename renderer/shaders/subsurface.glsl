@@ -10,6 +10,10 @@ uniform vec4 u_anisotropy;
 uniform vec3 u_subsurface_gain;        // makes the mean column's single scattering white
 uniform float u_multiple_share;        // of the reflectance, left to multiple scattering
 
+// Of the light that enters the layers, a share leaves them nowhere near: aside under the limbus, or
+// into the pigment epithelium. The preset "calibrated" gives it back.
+const float LAYERS_RETURN = 0.86;
+
 // Henyey and Greenstein 1941.
 vec4 phase(float cosine) {
     vec4 g = u_anisotropy, base = 1.0 + g * g - 2.0 * g * cosine;
@@ -110,7 +114,7 @@ vec3 single_scattering(IrisTexel texel, ViewRay ray, IrisLight light) {
     m.map_mm = texel.map_mm;
     m.view_cosine = max(-ray.d_eye.z, 0.25);
     m.drift = ray.d_eye.xy * vec2(u_mirror, 1.0);
-    m.light_cosine = max(-light.w_eye.z, 0.35);
+    m.light_cosine = max(-light.w_eye.z, MIN_LIGHT_COSINE);
     float column = dot(thickness_at(m.map_mm, m.lod), vec4(1.0));
     m.length_mm = min(MAX_DEPTH_MM, DEPTH_MARGIN * column) / m.view_cosine;
     m.phase = phase(dot(light.w_eye, -ray.d_eye));
@@ -123,5 +127,5 @@ vec3 single_scattering(IrisTexel texel, ViewRay ray, IrisLight light) {
 vec3 iris_reflectance(IrisTexel texel, ViewRay ray, IrisLight light) {
     if (SUBSURFACE < HIGH) return texel.albedo;
     vec3 single = PI * u_subsurface_gain * single_scattering(texel, ray, light);
-    return texel.albedo * mix(single, vec3(1.0), u_multiple_share);
+    return LAYERS_RETURN * texel.albedo * mix(single, vec3(1.0), u_multiple_share);
 }
