@@ -22,7 +22,7 @@ SUNK_MM: Final = 0.3  # roots lie in the skin
 OWN_SKIN: Final = 0.3  # what the lid's skin says against the globe beneath, about a lash's frame
 CLEAR_MM: Final = 0.25  # hairs keep so far off the skin
 MOST_BEND_MM: Final = 3.0  # in each of BEND_STEPS
-BEND_STEPS: Final = 4
+BEND_STEPS: Final = 6
 SHADOW_MM: Final = 0.8  # width of the soft shadow at a root
 COLOUR: Final = (0.062, 0.037, 0.024)  # dark brown; tips let more light through (fibre.glsl)
 
@@ -79,7 +79,7 @@ UPPER: Final = LashRow(
     rows_mm=(-0.3, 0.05, 0.38),
     width_mm=(0.068, 0.100),
     between_mm=(-12.0, 11.6),
-    shadow=0.13,
+    shadow=0.17,
 )
 LOWER: Final = LashRow(
     count=75,
@@ -96,7 +96,7 @@ LOWER: Final = LashRow(
     rows_mm=(0.0, 0.35),
     width_mm=(0.044, 0.066),
     between_mm=(-10.0, 11.3),
-    shadow=0.10,
+    shadow=0.16,
 )
 
 
@@ -194,14 +194,15 @@ def _hairs(lid: LidPatch, row: LashRow, growth: _Growth) -> Strands:
 
 
 def _off_the_skin(lid: LidPatch, points: Floats, normal: Floats) -> Floats:
-    """Bend hairs (n, k, 3) whose way leads into the skin away from it, along their roots' normals.
+    """Bend hairs (n, k, 3) whose way leads into the skin away from it.
 
-    Skin bulges where a lid folds: under the eye that looks down, or over the open one.
+    Skin bulges where a lid folds: under the eye that looks down, or over the open one. Hairs give
+    way along their roots' normals and, as the nose's side rises steeply, along the skin's own.
     """
     skin = lid.points_mm[:, lid.rim_row + 1 :]
     around = np.roll(skin, -1, axis=0) - np.roll(skin, 1, axis=0)
     facing = _unit(np.cross(around, np.gradient(skin, axis=1)) + 1e-12)
-    facing *= np.sign((facing * skin).sum(axis=2, keepdims=True))
+    facing *= np.sign((facing * skin).sum())  # one sign for all: the nose's side faces the eye
     tree, flat_facing = cKDTree(skin.reshape(-1, 3)), facing.reshape(-1, 3)
     s = np.linspace(0, 1, points.shape[1])
     free = s > 0.15  # the root itself lies in the skin
@@ -212,7 +213,10 @@ def _off_the_skin(lid: LidPatch, points: Floats, normal: Floats) -> Floats:
         height = (away * flat_facing[near]).sum(axis=1).reshape(len(points), -1)
         lacking = (CLEAR_MM * np.minimum(4 * s[free], 1.0) - height) / s[free]
         bend = np.clip(lacking.max(axis=1), 0.0, MOST_BEND_MM)
-        way = points - points[:, :1] + (bend[:, None] * s)[..., None] * normal[:, None]
+        worst = np.argmax(lacking, axis=1)
+        wall = flat_facing[near].reshape(*height.shape, 3)[np.arange(len(points)), worst]
+        aside = _unit(normal + wall)
+        way = points - points[:, :1] + (bend[:, None] * s)[..., None] * aside[:, None]
         points = points[:, :1] + way * (length / _length(way))[:, None, None]
     return points
 

@@ -11,9 +11,7 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats
-from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.lids import Curve, LidRims
-from renderer.eye.optics import surface_height
 from renderer.head.lid_pose import (
     LOWER_FOLLOWS,
     LOWER_GOES_NASAL_MM,
@@ -152,8 +150,3 @@ def smooth_step(x: Floats) -> Floats:
     """Ease from 0 to 1 over x from 0 to 1, with two smooth derivatives (Perlin 2002)."""
     x = np.clip(x, 0.0, 1.0)
     return np.asarray(x * x * x * (x * (6 * x - 15) + 10))
-
-
-def globe_height(r_mm: Floats) -> Floats:
-    """Return the height in mm of sclera or cornea at a distance from the gaze axis."""
-    return np.asarray(surface_height(np.minimum(r_mm, GLOBE_RADIUS_MM - 1e-6))[0])

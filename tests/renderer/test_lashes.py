@@ -7,14 +7,17 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.spatial import cKDTree
 
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.optics import surface_height
 from renderer.head.face_mesh import face_mesh
 from renderer.head.lashes import UPPER, Strands, grow_lashes, rim_frames
-from renderer.head.lid_fit import LidPatch
+from renderer.head.lid_fit import LidPatch, fit_lids
+from renderer.head.lid_pose import STRAIGHT, LidPose
 
 Floats = npt.NDArray[np.float64]
+SHUT = LidPose(blink=1.0)
 
 
 def rng(seed: int = 3) -> np.random.Generator:
@@ -136,6 +139,19 @@ def test_lashes_bend_away_from_skin_that_bulges_in_their_way(lid: LidPatch) -> N
     near = np.array([np.argmin(((skin - tip) ** 2).sum(axis=1)) for tip in tips[::7]])
     height = tips[::7, 2] - skin[near, 2]
     assert (height > -0.2).mean() > 0.88
+
+
+@pytest.mark.parametrize("pose", [STRAIGHT, LidPose(0.0, -30.0), LidPose(0.0, 25.0), SHUT])
+def test_no_lash_pierces_the_skin_however_the_lids_fold(pose: LidPose) -> None:
+    lid = fit_lids(face_mesh().sockets[1], pose)
+    points = grow_lashes(lid, rng())[1].points_mm[:, 3:].reshape(-1, 3)
+    skin = lid.points_mm[:, lid.rim_row + 1 :]
+    around = np.roll(skin, -1, axis=0) - np.roll(skin, 1, axis=0)
+    facing = np.cross(np.gradient(skin, axis=1), around)  # from the temple over the upper lid
+    facing /= np.linalg.norm(facing, axis=2, keepdims=True) + 1e-9
+    _, near = cKDTree(skin.reshape(-1, 3)).query(points)
+    height = ((points - skin.reshape(-1, 3)[near]) * facing.reshape(-1, 3)[near]).sum(axis=1)
+    assert height.min() > 0.05
 
 
 def test_tips_of_a_tuft_meet_but_roots_do_not(hairs: Strands) -> None:

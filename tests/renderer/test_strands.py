@@ -31,7 +31,15 @@ def straight(count: int, width_mm: float, *, slope: float = 0.3) -> Strands:
 
 
 def darkness_mm2(gl: moderngl.Context, strands: Strands, px_per_mm: float) -> float:
-    """Draw black hairs on white, in parallel projection from far; return the area they darken."""
+    """Return the area that black hairs darken on white."""
+    return float(darkness(gl, strands, px_per_mm).sum()) / px_per_mm**2
+
+
+def darkness(gl: moderngl.Context, strands: Strands, px_per_mm: float) -> npt.NDArray[np.floating]:
+    """Draw black hairs on white, in parallel projection from far; return what is dark, 0 to 1.
+
+    Rows run upwards from the lowest.
+    """
     target = gl.framebuffer(
         [gl.texture((SIZE_PX, SIZE_PX), 4, samples=4, dtype="f2")],
         gl.depth_texture((SIZE_PX, SIZE_PX), samples=4),
@@ -59,7 +67,7 @@ def darkness_mm2(gl: moderngl.Context, strands: Strands, px_per_mm: float) -> fl
     gl.copy_framebuffer(mean, target)
     image = np.frombuffer(mean.read(components=4, dtype="f4"), np.float32).reshape(-1, 4)
     assert image[:, 3].min() == 1.0  # the picture stays opaque
-    return float((1.0 - image[:, 0]).sum()) / px_per_mm**2
+    return 1.0 - image[:, 0].reshape(SIZE_PX, SIZE_PX)
 
 
 def true_area_mm2(strands: Strands) -> float:
@@ -74,6 +82,16 @@ def test_a_hair_darkens_as_much_as_it_covers_at_every_scale(
 ) -> None:
     strands = straight(1, 0.28)
     assert darkness_mm2(gl, strands, px_per_mm) == pytest.approx(true_area_mm2(strands), rel=0.1)
+
+
+def test_a_hair_narrows_from_its_root_to_a_point(gl: moderngl.Context) -> None:
+    px_per_mm, width_mm = 10.0, 0.4
+    across_mm = darkness(gl, straight(1, width_mm, slope=0.0), px_per_mm).sum(axis=1) / px_per_mm
+    y_mm = (np.arange(SIZE_PX) + 0.5 - SIZE_PX / 2) / px_per_mm
+    for place in (0.1, 0.5, 0.8, 0.95):
+        here = np.abs(y_mm - (place - 0.5) * LENGTH_MM) < 0.2
+        assert across_mm[here].mean() / width_mm == pytest.approx(1 - place**2, abs=0.06)
+    assert across_mm[np.abs(y_mm) > 0.52 * LENGTH_MM].max() == 0.0
 
 
 def test_hairs_too_thin_to_draw_one_by_one_are_stood_for_by_others(gl: moderngl.Context) -> None:
