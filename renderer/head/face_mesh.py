@@ -263,7 +263,7 @@ def _patch(lid: lid_fit.LidPatch, eye: int) -> SkinPart:
     # Shut lids show nothing of their margins.
     shown = 1.0 - 0.35 * lid.pose.blink
     margin = 1.0 - _ramp(across, edge * 0.75 * shown, edge * 1.15 * shown)
-    wet = 1.0 - _ramp(across, edge * 0.08, edge * 0.38)
+    wet = 1.0 - _ramp(across, edge * 0.08, edge * 0.34)
     beyond = across - edge
     total = beyond[:, -1:]
     fade = 1.0 - _ramp(beyond, 0.25 * total, 0.85 * total)

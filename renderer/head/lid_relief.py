@@ -25,6 +25,8 @@ from renderer.head.lid_layout import (
 )
 from renderer.textures.micro_relief import Net, Tile, net_relief, periodic_noise
 
+JUNCTION_MM: Final = 0.62  # of skin and mucous membrane, from the lid's inner edge
+ORIFICES_MM: Final = 0.30  # of the meibomian glands, beyond the junction
 SLOPE_RANGE: Final = 0.8  # stored slopes run from minus to plus this
 LINES: Final = Tile(32.0, 1024)
 NETS: Final = (
@@ -127,6 +129,7 @@ def _height(place: Layout, sources: _Sources, eye: int) -> Floats:
     fan = np.exp(-((angle / 1.25) ** 4)) * _ease((radius - 0.8) / 2.5) * (place.x > 10.0)
     lid = 1.0 - fan
     skin = _ease((place.beyond + 0.25) / 0.5)
+    plate = upper_plate(place)
 
     def crepe(scale: float, turn: float, *, share: float, seed: float) -> Floats:
         c, t = np.cos(turn), np.sin(turn)
@@ -145,15 +148,34 @@ def _height(place: Layout, sources: _Sources, eye: int) -> Floats:
     height -= fan * (0.060 * _groove(feet, share=0.9, steep=1.9) + 0.008 * rings)
     net = _sample(sources.net, place.flat[0] + shift, place.flat[1])
     height += (0.85 * upper + 0.95 * lower) * net
+    # Between lashes and crease the skin lies loose on the tarsus: the finest crepe of all.
+    tiny = crepe(0.26, 0.06, share=0.4, seed=29.0)
+    height -= plate * (0.011 * tiny + 0.014 * fine + 0.012 * (rising + falling))
     grain = _sample(sources.noise, s * 4.0 + shift, w * 4.0)
     height += 0.0022 * grain
     return np.asarray(height * skin + (1 - skin) * _margin_relief(place, sources, shift))
 
 
 def _margin_relief(place: Layout, sources: _Sources, shift: float) -> Floats:
-    """Return the lid margin's relief in mm: nearly smooth, with a row of glands' openings."""
-    soft = 0.006 * _sample(sources.noise, place.around + shift, place.across)
-    return np.asarray(soft - 0.022 * _orifices(place))
+    """Return the lid margin's relief in mm: soft folds across it and a row of glands' openings."""
+    soft = 0.015 * _sample(sources.noise, 0.9 * place.around + shift, 0.55 * place.across)
+    fine = 0.004 * _sample(sources.noise, 2.6 * place.around - shift, 2.2 * place.across)
+    groove = 0.012 * np.exp(-((_from_junction(place, sources, shift) / 0.10) ** 2))
+    return np.asarray(soft + fine - groove - 0.026 * _orifices(place))
+
+
+def upper_plate(place: Layout) -> Floats:
+    """Return how much a place belongs to the upper lid's skin between lashes and crease, 0 to 1."""
+    return place.upper * _ease(place.beyond / 0.4) * _ease((3.6 - place.beyond) / 1.8)
+
+
+def _from_junction(place: Layout, sources: _Sources, shift: float) -> Floats:
+    """Return the way in mm from the mucocutaneous line, where skin ends and mucous membrane begins.
+
+    It runs a little unevenly behind the glands' openings.
+    """
+    wander = 0.05 * _sample(sources.noise, 0.35 * place.around + shift, 0.0 * place.across)
+    return np.asarray(place.across - JUNCTION_MM - wander)
 
 
 def _orifices(place: Layout) -> Floats:
@@ -161,7 +183,7 @@ def _orifices(place: Layout) -> Floats:
     number = np.round(place.around / 1.05)
     jitter = np.sin(number * 12.9898) * 0.22
     along = place.around - number * 1.05 - jitter
-    across = place.beyond + 0.62 + 0.08 * np.sin(number * 78.233)
+    across = place.across - JUNCTION_MM - ORIFICES_MM - 0.08 * np.sin(number * 78.233)
     clear = _ease((place.x + 12.5) / 2.0) * _ease((11.0 - place.x) / 2.0)  # of the canthi
     return np.asarray(clear * np.exp(-(along**2 + across**2) / 0.10**2))
 
@@ -175,4 +197,19 @@ def _blood(place: Layout, sources: _Sources, eye: int) -> Floats:
     contour = _sample(sources.coarse, 1.15 * x - shift, 1.15 * y)
     vessels = np.exp(-((contour / 0.07) ** 2)) * _ease(blotches * 0.6 + 0.25)
     veined = 1.2 + 1.3 * place.upper
-    return np.asarray(0.5 * blotches + 0.4 * fine + veined * vessels + 0.8 * _orifices(place))
+    blood = 0.5 * blotches + 0.4 * fine + veined * vessels
+    blood += upper_plate(place) * (0.5 * blotches + 0.5 * fine)
+    return np.asarray(blood + _margin_blood(place, sources, shift))
+
+
+def _margin_blood(place: Layout, sources: _Sources, shift: float) -> Floats:
+    """Return the blood in the lid margin: the red mucocutaneous line, specks, fine vessels."""
+    on_margin = _ease(0.5 - place.beyond / 0.5)
+    line = np.exp(-((_from_junction(place, sources, shift) / 0.13) ** 2))
+    patchy = 0.75 + 0.35 * _sample(sources.noise, 0.3 * place.around - shift, 0.3 * place.across)
+    specks = _sample(sources.noise, 0.8 * place.around + shift, 0.6 * place.across)
+    # Fine vessels run across the margin.
+    at = _sample(sources.noise, 0.45 * place.around + 2 * shift, 0.10 * place.across)
+    vessels = np.exp(-((at / 0.10) ** 2)) * _ease(0.5 + 0.8 * specks)
+    pores = _orifices(place)
+    return np.asarray(on_margin * (3.3 * line * patchy + 1.2 * specks + 1.2 * vessels + pores))

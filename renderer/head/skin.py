@@ -22,10 +22,12 @@ from renderer.head.unrolling import unroll_mm
 SCALP: Final = 0.55  # what is dark between the hairs, as a share of their colour
 BASE: Final = (0.60, 0.368, 0.280)
 LIPS: Final = (0.50, 0.235, 0.205)
-MARGIN: Final = (0.60, 0.340, 0.290)
-MARGIN_FLUSH: Final = (0.98, 0.905, 0.895)  # the fine vessels where the lashes grow
-THIN: Final = (0.91, 0.85, 0.89)  # veins and muscle through the upper lid: bluish red
-WET: Final = (0.60, 0.300, 0.268)
+MARGIN: Final = (0.525, 0.282, 0.224)
+MARGIN_FLUSH: Final = (0.92, 0.84, 0.83)  # the fine vessels where the lashes grow
+THIN: Final = (0.91, 0.875, 0.90)  # veins and muscle through the upper lid: bluish red
+PLATE: Final = (0.86, 0.84, 0.86)  # between lashes and crease the skin is the body's thinnest
+CREASE: Final = (0.86, 0.855, 0.86)  # pigment where skin folds all day
+WET: Final = (0.52, 0.230, 0.195)
 SCLERA: Final = (0.66, 0.555, 0.49)  # seen through the conjunctiva in the corners
 CARUNCLE: Final = (0.62, 0.255, 0.215)
 # Tints: centre x, y in mm, radii in mm, factor of the albedo. Both sides alike unless x is 0.
@@ -97,7 +99,14 @@ def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
     # From the lashes up into the fold, where the skin is the body's thinnest.
     is_upper = np.clip(np.sin(2 * np.pi * around / AROUND_MM), 0.0, 1.0) ** 0.5
     thin = part.lid * is_upper * np.exp(-(((across - 5.2) / 5.2) ** 4))
-    for weight, factor in ((beside_margin, MARGIN_FLUSH), (thin, THIN)):
+    plate = part.lid * is_upper * np.exp(-(((across - 3.0) / 2.0) ** 4))
+    crease = part.lid * is_upper * np.exp(-(((across - 4.3) / 0.8) ** 2))
+    for weight, factor in (
+        (beside_margin, MARGIN_FLUSH),
+        (thin, THIN),
+        (plate, PLATE),
+        (crease, CREASE),
+    ):
         albedo *= 1 + weight[:, None] * (np.array(factor) - 1)
 
 
@@ -107,7 +116,7 @@ def _gloss(part: SkinPart) -> Floats:
     gloss = 0.35 + 0.25 * np.exp(-((x / 14.0) ** 2) - ((y + 25.0) / 28.0) ** 2)
     gloss += 0.15 * np.exp(-((x / 50.0) ** 2) - ((y - 50.0) / 25.0) ** 2)
     gloss += 0.25 * part.lips - 0.12 * part.lid
-    return np.asarray(np.clip(np.maximum(gloss, 0.5 * part.margin), 0.0, 1.0))
+    return np.asarray(np.clip(np.maximum(gloss, 0.9 * part.margin), 0.0, 1.0))
 
 
 def detail_coordinates(points_mm: Floats) -> Floats:

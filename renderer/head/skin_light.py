@@ -26,7 +26,7 @@ SCATTERED: Final = (0.75, 0.7, 0.6)
 BOUNCE_ALBEDO: Final = (0.30, 0.20, 0.155)  # what the covered directions send: skin and sweater
 # Around the eyes they send more: nose and cheek catch over twice as much sun as typical light has,
 # and light goes to and fro between them.
-SOCKET_BOUNCE: Final = (1.05, 0.90, 0.84)
+SOCKET_BOUNCE: Final = (1.00, 0.91, 0.87)
 SOCKET_MM: Final = (22.0, 9.0)  # half widths of that region, across and up
 
 

@@ -17,14 +17,18 @@ out vec4 out_radiance;
 const float TEAR_F0 = 0.021;
 const float RADIUS_MM = 0.28;        // of the hollow: the normal turns by a radian over this way
 const float HEIGHT_MM = 0.35;        // of the strip, from globe to lid
-const float EDGE_SHADE = 0.16;       // what the upper edge takes away
+const float EDGE_SHADE = 0.10;       // what the upper edge takes away
+// The hollow spreads sunlight that falls through it; what it loses gathers in a line along its foot
+// on the lid: how much brighter the moist lid is there.
+const float GATHERED = 0.42;
+const vec3 MUCOSA = vec3(0.70, 0.53, 0.48);
 // Slopes of the water, root mean square. Across, the hollow is smooth; along the lid lashes, oil
 // and mucus ripple it, which draws the sun's image out into a line: a sharp and a wide part.
 const float ACROSS = 0.05;
-const vec2 ALONG = vec2(0.04, 0.42);
-const vec2 SHARE = vec2(0.6, 0.4);
+const vec2 ALONG = vec2(0.05, 0.60);
+const vec2 SHARE = vec2(0.5, 0.5);
 // The harmonics keep a ninth of a real sky's contrast: bright clouds and the sun's halo count more.
-const float SKY_CONTRAST = 1.8;
+const float SKY_CONTRAST = 3.0;
 
 // Beckmann's distribution with two slopes (Ward 1992), for small angles.
 float lobe(vec3 n, vec3 h, vec2 slopes) {
@@ -33,13 +37,19 @@ float lobe(vec3 n, vec3 h, vec2 slopes) {
     return exp(-0.5 * dot(x, x)) / (2.0 * PI * slopes.x * slopes.y);
 }
 
-vec3 sun_mirrored(vec3 n, vec3 v) {
+vec3 sun_mirrored(vec3 n, vec3 v, float visible) {
     vec3 h = normalize(v + u_sun_direction);
     float across = length(vec2(ACROSS, min(0.4 * u_mm_per_px / RADIUS_MM, 0.5)));
     float d = SHARE.x * lobe(n, h, vec2(ALONG.x, across)) + SHARE.y * lobe(n, h, vec2(ALONG.y, across));
     float l_dot_h = max(dot(u_sun_direction, h), 0.1);
-    float lit = max(dot(n, u_sun_direction), 0.0) * sun_visibility(v_world, 1.5);
+    float lit = max(dot(n, u_sun_direction), 0.0) * visible;
     return u_sun_irradiance * (schlick(l_dot_h, TEAR_F0) * d * lit / (4.0 * l_dot_h * l_dot_h));
+}
+
+vec3 sun_gathered(vec3 n, float visible) {
+    float foot = (v_water.x - 0.80) / 0.13;
+    float lit = max(dot(n, u_sun_direction), 0.0) * visible;
+    return u_sun_irradiance / PI * MUCOSA * (GATHERED * lit * exp(-foot * foot));
 }
 
 vec3 sky_mirrored(vec3 n, vec3 v, float fresnel) {
@@ -57,5 +67,7 @@ void main() {
     float taken = fresnel + EDGE_SHADE * edge * (1.0 - edge) * 4.0;
     // A line narrower than a pixel fills but a part of it.
     float amount = v_water.y * min(HEIGHT_MM / u_mm_per_px, 1.0);
-    out_radiance = amount * vec4(sky_mirrored(n, v, fresnel) + sun_mirrored(n, v), taken);
+    float visible = sun_visibility(v_world, 1.5);
+    vec3 radiance = sky_mirrored(n, v, fresnel) + sun_mirrored(n, v, visible) + sun_gathered(n, visible);
+    out_radiance = amount * vec4(radiance, taken);
 }
