@@ -29,6 +29,7 @@ from renderer.eye.sunlight import (
     RELIEF_SHADE_PX,
     relief_shade_map,
     rims_texture,
+    scattered_sun,
     shade_map,
     sunlight_values,
 )
@@ -183,6 +184,7 @@ class Eyes:
             "u_mirror": mirror,
             "u_iris_gain": np.full(3, gain),
         }
+        values["u_scattered_sun"] = scattered_sun(self._gl, values["u_shade_map"])
         values["u_relief_shade"] = relief_shade_map(
             self._gl, values, constants=constants, size_px=RELIEF_SHADE_PX.get(detail.texture, 0)
         )

@@ -47,7 +47,7 @@ __all__ = [
 BASE_PX: Final = 2048
 
 # Linear Rec. 709; reference/eye-rendering.md, 1.6. The white of an eye is a warm light grey.
-WHITE: Final = (0.72, 0.66, 0.60)
+WHITE: Final = (0.735, 0.66, 0.605)
 YELLOW: Final = (0.70, 0.60, 0.46)  # towards the canthi and where fat lies under the conjunctiva
 PINK: Final = (0.68, 0.44, 0.40)  # near the caruncle and in the folds
 BLUISH: Final = (0.60, 0.62, 0.62)  # thin sclera next to the limbus
@@ -78,7 +78,7 @@ def sclera_maps(seed: int, *, size_px: int) -> ScleraMaps:
     below, outside the cornea) and is flat. Raises ValueError for an unknown size.
     """
     check_size(size_px, BASE_PX)
-    kept = _kept(seed)
+    kept = _kept(seed, BASE_PX)
     if size_px == 1:
         flat = np.array([[[0.0, 0.0, 1.0]]], np.float32)
         return ScleraMaps(albedo=kept["mean_albedo"].reshape(1, 1, 3), normal=flat)
@@ -95,8 +95,8 @@ def mean_albedo(seed: int) -> Field:
 
 
 @lru_cache(maxsize=2)
-def _kept(seed: int) -> dict[str, npt.NDArray[Any]]:
-    return cached_arrays(f"sclera:{seed}:{BASE_PX}", lambda: bake_sclera(seed, size_px=BASE_PX))
+def _kept(seed: int, size_px: int) -> dict[str, npt.NDArray[Any]]:
+    return cached_arrays(f"sclera:{seed}:{size_px}", lambda: bake_sclera(seed, size_px=size_px))
 
 
 def bake_sclera(seed: int, *, size_px: int) -> dict[str, npt.NDArray[Any]]:
@@ -133,6 +133,11 @@ def _base_colour(x: Field, y: Field, arc: Field, *, seed: int) -> Field:
     yellow += np.float32(0.18) * np.exp(-(((side - 8.3) / 1.1) ** 2) - (y / 1.6) ** 2)
     pink = np.float32(0.75) * smoothstep(11.0, 17.5, x + np.float32(0.7) * broad)
     pink = np.maximum(pink, np.float32(0.55) * smoothstep(14.0, 20.0, arc))
+    # Capillaries too fine to be drawn one by one flush the conjunctiva in soft-edged patches.
+    patches = noise_grid(n, n, cells=(26.0, 26.0), seed=seed * 8 + 6)
+    patches += np.float32(0.6) * noise_grid(n, n, cells=(75.0, 75.0), seed=seed * 8 + 7)
+    flush = smoothstep(-0.3, 2.2, patches) * smoothstep(LIMBUS_ARC_MM, LIMBUS_ARC_MM + 2.0, arc)
+    pink = np.maximum(pink, np.float32(0.40) * flush)
     bluish = np.float32(0.45) * smoothstep(LIMBUS_ARC_MM + 1.3, LIMBUS_ARC_MM - 0.2, arc)
     shade = 1.0 + 0.018 * broad + 0.014 * mottle + 0.008 * fine
     planes = np.empty((3, n, n), np.float32)

@@ -7,10 +7,11 @@ from typing import Any, Final
 import moderngl
 import numpy as np
 import numpy.typing as npt
+from scipy import ndimage
 
 from renderer.cache import cached_array
 from renderer.detail import Detail
-from renderer.eye.anatomy import shader_constants
+from renderer.eye.anatomy import GLOBE_RADIUS_MM, shader_constants
 from renderer.eye.caustics import MAP_EDGE_MM, caustic_map
 from renderer.eye.chamber import chamber_irradiance
 from renderer.eye.lids import LidRims
@@ -25,6 +26,7 @@ Values = dict[str, Any]
 DIRECTION_MAP_PX: Final = 256  # refracted light's direction where no caustic is drawn
 RELIEF_SHADE_PX: Final = {"high": 512, "ultra": 1024}  # per level of texture
 SHADE_MAP_PX: Final = 512  # 0.05 mm: finer than the softest edge of a shadow
+SCATTER_MM: Final = 0.3  # standard deviation of light's way in the sclera, our estimate
 RIM_SAMPLES: Final = 128
 RIM_EDGE_MM: Final = 18.0
 
@@ -75,6 +77,19 @@ def shade_map(gl: moderngl.Context, placed: Values) -> moderngl.Texture:
     with gl.scope(gl.framebuffer([texture]), moderngl.NOTHING):
         gl.vertex_array(program.gl_program, []).render(moderngl.TRIANGLES, vertices=3)
     return clamped(texture)
+
+
+def scattered_sun(gl: moderngl.Context, shade: moderngl.Texture) -> moderngl.Texture:
+    """Return the sun's share of a shade map as the white shows it, one channel.
+
+    Light that enters the sclera leaves it a few tenths of a millimetre away: shadows of single
+    lashes fade where the film's glints still show them sharp.
+    """
+    size = shade.size[0]
+    sun = np.frombuffer(shade.read(), np.float16).reshape(size, size, 4)[..., 3]
+    texel_mm = 2 * GLOBE_RADIUS_MM / size
+    spread = ndimage.gaussian_filter(sun.astype(np.float32), SCATTER_MM / texel_mm, mode="nearest")
+    return grey_texture(gl, spread, mips=False)
 
 
 def relief_shade_map(

@@ -7,6 +7,7 @@ uniform sampler2D u_lid_rims;      // per x: y of upper, y of lower, z of upper,
 const float RIM_EDGE_MM = 18.0;    // half the width that the rims' table covers
 const float LID_FRONT_MM = 13.4;   // radius of the lids' middle surface, which rays pass or hit
 const vec3 LID_REFLECTANCE = vec3(0.38, 0.24, 0.18);  // skin
+const vec3 LASH_REFLECTANCE = vec3(0.02, 0.012, 0.008);
 
 vec4 rims_at(float x_mm) {
     return textureLod(u_lid_rims, vec2(0.5 + 0.5 * x_mm / RIM_EDGE_MM, 0.5), 0.0);
@@ -73,9 +74,9 @@ float lash_cover(vec3 at, vec3 d_eye, float room_mm, float reach_mm) {
     return along * lash_hairs(root_mm, way, blur_mm);
 }
 
-// 1 where a ray leaves between the lids, 0 where it meets a lid or its lashes.
+// What lets a ray pass: x 1 between the lids, 0 where it meets one; y 1 past the lashes.
 // renderer/eye/chamber.py, lid_openness, says the same without lashes: it gathers whole skies.
-float lid_openness(vec3 p_eye, vec3 d_eye, float softness_mm) {
+vec2 past_lids_and_lashes(vec3 p_eye, vec3 d_eye, float softness_mm) {
     float along = dot(p_eye, d_eye);
     float excess = dot(p_eye, p_eye) - LID_FRONT_MM * LID_FRONT_MM;
     float reach = max(-along + sqrt(max(along * along - excess, 0.0)), 0.0);
@@ -84,7 +85,7 @@ float lid_openness(vec3 p_eye, vec3 d_eye, float softness_mm) {
     softness_mm += 0.12 * reach;  // grazing rays meet a rounded edge, not a line
     float room = min(rims.x - at.y, at.y - rims.y);
     float past_lids = smoothstep(-softness_mm, softness_mm, room);
-    return past_lids * (1.0 - lash_cover(at, d_eye, rims.x - at.y, reach));
+    return vec2(past_lids, 1.0 - lash_cover(at, d_eye, rims.x - at.y, reach));
 }
 
 // Share of the sky that a point of the globe sees past the lids, redder where skin fills the rest:
@@ -102,7 +103,7 @@ vec3 lid_shade(vec3 p_eye) {
 
 // Share of the sun that reaches a point of the globe, past this eye's lids and the whole head.
 float sun_reaching(vec3 p_eye, vec3 toward_sun) {
-    float past_lids = lid_openness(p_eye, toward_sun, 0.35);
-    if (past_lids <= 0.0) return 0.0;
-    return min(past_lids, sun_visibility(world_from_eye(p_eye), 0.6));
+    vec2 past = past_lids_and_lashes(p_eye, toward_sun, 0.35);
+    if (past.x * past.y <= 0.0) return 0.0;
+    return min(past.x * past.y, sun_visibility(world_from_eye(p_eye), 0.6));
 }

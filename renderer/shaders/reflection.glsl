@@ -11,14 +11,10 @@ const float CORNEA_EXPONENT = 400.0;         // Blinn-Phong, at medium
 const float SCLERA_EXPONENT = 220.0;         // of a plain sclera
 const float FILM_EXPONENT = 2400.0;          // of the film between the bumps of its relief
 const float PLAIN_BLUR = 0.05;               // radians by which a plain sclera's mirror is blurred
-const float MENISCUS_MM = 0.4;               // height of the tears along the lower lid
 
-// The tear line climbs up the lower lid: its normal turns from the globe's towards the sky.
+// The tears along the lower lid have a surface of their own (tears.frag).
 vec3 tear_normal(Surface s) {
-    if (REFLECTION < HIGH) return s.n_eye;  // a plain mirror
-    float above = s.p_eye.y - rims_at(s.p_eye.x).y;
-    float bend = 1.0 - smoothstep(0.0, MENISCUS_MM, above);
-    return normalize(s.n_film + 0.9 * bend * vec3(0.0, 1.0, 0.0));
+    return REFLECTION < HIGH ? s.n_eye : s.n_film;  // medium: a plain mirror
 }
 
 // Walter et al. 2007, eq. 33 and 34 (GGX, height-correlated shadowing), without Fresnel's factor.
@@ -75,16 +71,18 @@ vec3 surroundings(vec3 d_world, float cone) {
     return radiance;
 }
 
-// The own face is not in the cubes: rays into lids, nose and cheeks meet skin in the shade.
+// The own face is not in the cubes: rays into lids, nose and cheeks meet skin in the shade, and the
+// sky above ends in the dark fringe of the lashes.
 vec3 mirrored(Surface s, vec3 n) {
     vec3 d = reflect(-s.v_eye, n);
     vec3 d_world = turned_to_world(d);
     float past_face = OWN_FACE == 1 ? smoothstep(-0.15, 0.25, d_world.z) : 1.0;
-    float open_share = lid_openness(s.p_eye, d, 0.9) * past_face;
-    vec3 skin = LID_REFLECTANCE * ambient_irradiance(vec3(0.0, 0.0, 1.0)) * (0.5 / PI);
+    vec2 past = past_lids_and_lashes(s.p_eye, d, 0.9);
+    vec3 shaded = ambient_irradiance(vec3(0.0, 0.0, 1.0)) * (0.5 / PI);
     float cone = 2.0 * u_mm_per_px / CORNEA_RADIUS_MM + 4.0 * sqrt(s.film_variance);
     if (SCLERA < HIGH || REFLECTION < HIGH) cone += (1.0 - s.cornea) * PLAIN_BLUR;
-    vec3 seen = mix(skin, surroundings(d_world, cone), open_share);
+    vec3 beyond = mix(LASH_REFLECTANCE * shaded, surroundings(d_world, cone), past.y);
+    vec3 seen = mix(LID_REFLECTANCE * shaded, beyond, past.x * past_face);
     return fresnel(clamp(dot(n, s.v_eye), 0.0, 1.0)) * seen;
 }
 

@@ -5,6 +5,7 @@
 uniform sampler2D u_sclera_albedo;   // azimuthal equidistant about the gaze axis
 uniform sampler2D u_sclera_normal;
 uniform vec3 u_sclera_mean;
+uniform sampler2D u_scattered_sun;   // the shade map's sun as tissue spreads it
 
 const float SCLERA_EDGE = 1.91986218;           // 110 degrees: where the maps end
 const vec3 SHADE_SEEP = vec3(0.72, 0.98, 1.05);
@@ -51,7 +52,8 @@ vec3 sclera_radiance(Surface s) {
     float cosine = dot(n, turned_to_eye(u_sun_direction));
     vec3 wrapped = max((cosine + SCATTER_WRAP) / ((1.0 + SCATTER_WRAP) * (1.0 + SCATTER_WRAP)), 0.0);
     // Light seeps into the lids' shade, red furthest.
-    vec3 sun = u_sun_irradiance * pow(vec3(s.sun), SHADE_SEEP) * wrapped;
+    float reaching = textureLod(u_scattered_sun, 0.5 + 0.5 * s.p_eye.xy / GLOBE_RADIUS_MM, 0.0).r;
+    vec3 sun = u_sun_irradiance * pow(vec3(reaching), SHADE_SEEP) * wrapped;
     vec3 ambient = ambient_irradiance(turned_to_world(n)) * s.sky;
     // The map shows the tissue face-on through the tear film: at a slant the film mirrors more, and
     // lets that much less of the tissue's light through.

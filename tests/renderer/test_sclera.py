@@ -21,9 +21,7 @@ def small_maps(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("OCULARIST_CACHE", str(tmp_path_factory.mktemp("bakes")))
         patch.setattr(sclera, "BASE_PX", SIZE_PX)
-        sclera._kept.cache_clear()
         yield
-        sclera._kept.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +69,7 @@ def test_vessels_cover_a_little_of_the_visible_white(density: Any) -> None:
 def test_no_vessel_lies_on_the_cornea(maps: sclera.ScleraMaps) -> None:
     _, _, arc = plane(SIZE_PX)
     inside = maps.albedo[arc < sclera.LIMBUS_ARC_MM - 0.3]
-    assert (inside[:, 1] / inside[:, 0]).min() > 0.92
+    assert (inside[:, 1] / inside[:, 0]).min() > 0.90
 
 
 def test_vessels_are_red_against_the_white(maps: sclera.ScleraMaps, density: Any) -> None:

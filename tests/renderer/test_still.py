@@ -34,7 +34,7 @@ def files(gl: moderngl.Context, tmp_path_factory: pytest.TempPathFactory) -> Pat
 def shown(radiance: np.ndarray, exposure: float) -> np.ndarray:
     """Expose, bend and encode as a display would have it (Narkowicz 2016; IEC 61966-2-1)."""
     u = radiance * exposure
-    c = np.clip(u * (2.51 * u + 0.03) / (u * (2.43 * u + 0.59) + 0.14), 0, 1)
+    c = np.clip(u * (2.51 * u + 0.1163) / (u * (2.4458 * u + 0.6162) + 0.1938), 0, 1)
     return np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055) * 255
 
 
