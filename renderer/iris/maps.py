@@ -84,7 +84,7 @@ def iris_maps(seed: int, colour: str, *, size_px: int) -> IrisMaps:
     """
     family(colour)
     check_size(size_px, BASE_PX)
-    return sized_maps(_kept(seed, colour), size_px)
+    return sized_maps(_kept(seed, colour, BASE_PX), size_px)
 
 
 def sized_maps(kept: dict[str, npt.NDArray[Any]], size_px: int) -> IrisMaps:
@@ -125,9 +125,9 @@ def bake_iris(seed: int, colour: str, *, size_px: int) -> dict[str, npt.NDArray[
 
 
 @lru_cache(maxsize=2)
-def _kept(seed: int, colour: str) -> dict[str, npt.NDArray[Any]]:
+def _kept(seed: int, colour: str, size_px: int) -> dict[str, npt.NDArray[Any]]:
     return cached_arrays(
-        f"iris:{seed}:{colour}:{BASE_PX}", lambda: bake_iris(seed, colour, size_px=BASE_PX)
+        f"iris:{seed}:{colour}:{size_px}", lambda: bake_iris(seed, colour, size_px=size_px)
     )
 
 

@@ -29,9 +29,7 @@ def small_maps(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("OCULARIST_CACHE", str(tmp_path_factory.mktemp("bakes")))
         patch.setattr(iris, "BASE_PX", SIZE_PX)
-        iris._kept.cache_clear()
         yield
-        iris._kept.cache_clear()
 
 
 @pytest.fixture(scope="module")
