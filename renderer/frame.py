@@ -27,7 +27,7 @@ class Frame:
 
 
 class FrameRenderer:
-    """Render the frames of one clip. Pass ``scene`` to reuse the last clip's where it fits."""
+    """Render the frames of one clip. Pass ``scene`` to reuse the last clip's as far as it fits."""
 
     def __init__(
         self,
@@ -41,7 +41,7 @@ class FrameRenderer:
         self.spec = spec
         self.wireframe = wireframe
         if scene is None or scene.key != scene_key(spec):
-            scene = build_scene(gl, spec)
+            scene = build_scene(gl, spec, last=scene)
         self.scene = scene
         scene.surroundings.prepare_background(camera_radius_mm(spec.distance))
         self._crowd_cube = self._make_crowd_cube()
@@ -75,6 +75,7 @@ class FrameRenderer:
 
     def _draw(self, azimuth_deg: float, time_s: float, elevation_deg: float) -> tuple[int, int]:
         """Draw every view and return each eye's visible pixels."""
+        self.scene.crowd.light = self.scene.light  # another scene may have borrowed the crowd
         if self._crowd_cube:
             self._crowd_cube.render(time_s)
         self._picture.begin()

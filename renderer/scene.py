@@ -28,26 +28,29 @@ class Scene:
 
 
 def scene_key(spec: ClipSpec) -> SceneKey:
-    """Return what a scene depends on."""
-    return (
+    """Return what a scene depends on: surroundings, head, crowd."""
+    around = (
         spec.environment,
         spec.environment_sha256,
         spec.environment_turn_deg,
         spec.environment_exposure_ev,
         spec.sun_azimuth_deg,
         spec.sun_elevation_deg,
-        spec.gaze_yaw_deg,
-        spec.gaze_pitch_deg,
-        spec.vergence_deg,
-        spec.blink,
-        spec.crowd,
     )
+    pose = (spec.gaze_yaw_deg, spec.gaze_pitch_deg, spec.vergence_deg, spec.blink)
+    return around, pose, spec.crowd
 
 
-def build_scene(gl: moderngl.Context, spec: ClipSpec) -> Scene:
-    """Build the scene of a clip."""
-    surroundings = Surroundings(gl, spec)
-    head = Head(gl, spec)
+def build_scene(gl: moderngl.Context, spec: ClipSpec, *, last: Scene | None = None) -> Scene:
+    """Build the scene of a clip, out of the parts of the ``last`` one that stay the same."""
+    key = scene_key(spec)
+    same = [a == b for a, b in zip(key, last.key, strict=True)] if last else [False] * 3
+    surroundings = last.surroundings if last and same[0] else Surroundings(gl, spec)
+    head = last.head if last and same[1] else Head(gl, spec)
     light = build_light(gl, surroundings.sky, head)
-    crowd = Crowd(gl, spec, light)
-    return Scene(scene_key(spec), surroundings, head, light, crowd)
+    if last and same[0] and same[2]:
+        crowd = last.crowd
+        crowd.light = light  # the same sun; the head's shadow may be another
+    else:
+        crowd = Crowd(gl, spec, light)
+    return Scene(key, surroundings, head, light, crowd)

@@ -16,7 +16,7 @@ from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, TABLE, Detail
 from renderer.fidelity import eye_rectangles
 from renderer.frame import FrameRenderer
-from renderer.scene import Scene, build_scene
+from renderer.scene import Scene
 from renderer.studio import Studio
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
@@ -24,8 +24,8 @@ SPEC = ClipSpec(left=LOW, right=ULTRA, width=320, height=180, duration_s=0.1, or
 
 
 @pytest.fixture(scope="module")
-def scene(gl: moderngl.Context) -> Scene:
-    return build_scene(gl, SPEC)
+def scene(standard_scene: Scene) -> Scene:
+    return standard_scene
 
 
 def render(gl: moderngl.Context, scene: Scene, spec: ClipSpec, azimuth_deg: float = 0.0):  # type: ignore[no-untyped-def]
