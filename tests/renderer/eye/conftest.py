@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, ClassVar
 
 import moderngl
@@ -16,13 +17,16 @@ from renderer.detail import Detail
 from renderer.eye import eyes as eye_module
 from renderer.eye import maps as eye_maps
 from renderer.eye import sunlight
+from renderer.eye.caustics import caustic_map
 from renderer.eye.eyes import Eyes
 from renderer.eye.lids import LidRims
+from renderer.eye.micro_relief import micro_relief_tile
 from renderer.eye.sclera import ScleraMaps
 from renderer.eye.subsurface import Tissue
 from renderer.iris import maps as iris_module
 from renderer.iris.maps import IrisMaps
 from renderer.light import Light, Sky
+from renderer.program import Program, build_program
 
 ALBEDO = np.array([0.3, 0.2, 0.1], np.float32)
 TISSUE = Tissue(np.full((4, 3), 3.0), np.full((4, 3), 5.0), np.full(4, 0.3))
@@ -30,6 +34,8 @@ OPEN = LidRims(*(np.array([[-40.0, y, 0.0], [40.0, y, 0.0]]) for y in (60.0, -60
 OFF = Detail.uniform("off")
 DISTANCE_MM = 6000.0
 IRIS_PX = 256
+FLAT_PX = 128
+CAUSTIC_PX = 512
 HALF_MM = 7.0  # half the picture's height at the eye
 
 
@@ -54,15 +60,18 @@ class FlatIris:
     tissue = TISSUE
 
     def maps(self, size_px: int) -> IrisMaps:
-        return flat_iris(size_px)
+        return flat_iris(min(size_px, FLAT_PX))
 
 
 def flat_sclera(_seed: int, *, size_px: int) -> ScleraMaps:
-    shape = (size_px, size_px, 3)
+    shape = (min(size_px, 4),) * 2 + (3,)
     return ScleraMaps(
         albedo=np.full(shape, 0.6, np.float32),
         normal=np.broadcast_to(np.array([0, 0, 1], np.float32), shape),
     )
+
+
+tile = cache(micro_relief_tile)
 
 
 @dataclass
@@ -143,24 +152,54 @@ class SmallIris:
         return iris_module.iris_maps(self.spec.iris_seed, self.spec.iris_colour, size_px=size)
 
 
+@pytest.fixture(scope="session")
+def bakes(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """One folder for all that these tests bake: keys tell the bakes apart."""
+    return str(tmp_path_factory.mktemp("bakes"))
+
+
+@pytest.fixture(scope="session")
+def programs() -> dict[Any, Program]:
+    """Programs by their header: compiling one costs more than drawing with it."""
+    return {}
+
+
 @pytest.fixture
-def bench(gl: moderngl.Context, monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> Bench:
-    monkeypatch.setenv("OCULARIST_CACHE", str(tmp_path))
-    monkeypatch.setattr(eye_maps, "iris_of", lambda _spec: FlatIris())
+def small(
+    bakes: str, programs: dict[Any, Program], monkeypatch: pytest.MonkeyPatch
+) -> pytest.MonkeyPatch:
+    """Share bakes and programs between tests; bake what does not matter here at small sizes."""
+
+    def shared(gl: moderngl.Context, vertex: str, *, fragment: str, constants: Any) -> Program:
+        key = (vertex, fragment, *sorted(constants.items()))
+        if key not in programs:
+            programs[key] = build_program(gl, vertex, fragment=fragment, constants=constants)
+        return programs[key]
+
+    monkeypatch.setenv("OCULARIST_CACHE", bakes)
+    monkeypatch.setattr(eye_module, "build_program", shared)
+    monkeypatch.setattr(sunlight, "build_program", shared)
+    monkeypatch.setattr(
+        sunlight, "caustic_map", lambda sun, size: caustic_map(sun, min(size, CAUSTIC_PX))
+    )
+    monkeypatch.setattr(eye_maps, "micro_relief_tile", tile)
     monkeypatch.setattr(eye_maps, "sclera_maps", flat_sclera)
     monkeypatch.setattr(eye_maps.sclera, "mean_albedo", lambda *_: np.full(3, 0.6))
     monkeypatch.setattr(eye_module, "CHAMBER_PX", 16)
+    monkeypatch.setattr(eye_module, "RELIEF_SHADE_PX", {"high": 256, "ultra": 256})
     monkeypatch.setattr(sunlight, "SHADE_MAP_PX", 64)
+    return monkeypatch
+
+
+@pytest.fixture
+def bench(gl: moderngl.Context, small: pytest.MonkeyPatch) -> Bench:
+    small.setattr(eye_maps, "iris_of", lambda _spec: FlatIris())
     return Bench(gl)
 
 
 @pytest.fixture
-def real_bench(gl: moderngl.Context, monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> Bench:
+def real_bench(gl: moderngl.Context, small: pytest.MonkeyPatch) -> Bench:
     """The bench with the irises that clips show."""
-    monkeypatch.setenv("OCULARIST_CACHE", str(tmp_path))
-    monkeypatch.setattr(iris_module, "BASE_PX", IRIS_PX)
-    monkeypatch.setattr(eye_maps, "iris_of", SmallIris)
-    monkeypatch.setattr(eye_maps, "sclera_maps", flat_sclera)
-    monkeypatch.setattr(eye_maps.sclera, "mean_albedo", lambda *_: np.full(3, 0.6))
-    monkeypatch.setattr(sunlight, "SHADE_MAP_PX", 64)
+    small.setattr(iris_module, "BASE_PX", IRIS_PX)
+    small.setattr(eye_maps, "iris_of", SmallIris)
     return Bench(gl)

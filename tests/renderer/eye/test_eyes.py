@@ -161,17 +161,6 @@ def test_our_integrator_and_the_thesiss_sum_agree_up_to_its_bias(bench: Any) -> 
     assert (few > 1.02 * ours).all()
 
 
-def test_calibrated_lods_have_the_same_iris(bench: Any) -> None:
-    means = []
-    for level in ("low", "medium", "high", "ultra"):
-        row = Detail.uniform(level).with_levels(texture="off")
-        pixels = bench.picture(bench.eyes(row, preset="calibrated"), size=(96, 96))
-        radius = np.hypot(*(np.indices((96, 96)) - 47.5)) * 2 * HALF_MM / 96
-        mirrored = 0.0207 if level in {"medium", "high", "ultra"} else 0.0
-        means.append(pixels[(radius > 2.7) & (radius < 4.8)].mean(axis=0) - mirrored)
-    np.testing.assert_allclose(means, np.broadcast_to(ALBEDO, (4, 3)), rtol=0.05)
-
-
 def test_the_same_eye_has_the_same_bytes(bench: Any) -> None:
     first, second = (
         bench.picture(bench.eyes(Detail.uniform("ultra"), sun=2.0), azimuth_deg=-35)
