@@ -16,7 +16,7 @@ from scipy.interpolate import RBFInterpolator
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.head.lid_pose import STRAIGHT, LidPose
-from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim, rim_shares, smooth_step
+from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim, rim_shares, smooth_step, soft_max
 from renderer.head.lid_skin import Columns, lower_skin, upper_skin
 
 TUCK_MM: Final = 1.6  # from the inner edge back to the patch's innermost ring
@@ -27,6 +27,8 @@ MEETING_MM: Final = 3.5  # lids that are nearer to each other turn their margins
 OUTLINE_MM: Final = (25.5, 22.5, 17.5, 19.5)  # patch ends: temple, nose, up, down of (0, 0)
 ENDING: Final = (0.0, 0.9, 1.8, 2.7)  # of the last rings, in mm beyond the outline
 SETTLED: Final = (0.25, 0.6, 0.9, 1.0, 1.0, 1.0, 1.0)  # how far the last rings obey the face
+LIFTED: Final = (0.35, 0.7, 1.0, 1.0, 1.0)  # how far the rings inside it keep off a lower place
+LIFT_MM: Final = 0.6  # how softly
 AROUND: Final = 176
 ALONG: Final = 48
 EDGE_ROW: Final = 3  # of the lids' inner edge
@@ -148,6 +150,10 @@ def _control_net(socket: Socket, pose: LidPose) -> tuple[Floats, int]:
     for row in range(rim_control + 1, net.shape[1]):
         # Rings lose the rim's corners on their way out.
         net[:, row] = _blur_ring(net[:, row], samples=min(1.0 + 0.6 * (row - rim_control), 8.0))
+    # Lids lie on the face and never dip below it: the dip would be a ring of shade around the eye.
+    for row, share in enumerate(LIFTED, start=net.shape[1] - len(ENDING) - len(LIFTED)):
+        face = socket.height(net[:, row, :2])
+        net[:, row, 2] += share * (soft_max(face, net[:, row, 2], LIFT_MM) - net[:, row, 2])
     for row, share in enumerate(SETTLED, start=net.shape[1] - len(SETTLED)):
         net[:, row, 2] += share * (socket.height(net[:, row, :2]) - net[:, row, 2])
     return net, rim_control

@@ -69,9 +69,14 @@ class Columns:
         globe = soft_max(globe + offset, floor, 2.0 - 1.2 * nose)
         return xy, globe + self.canthus * (level - globe)
 
-    def settled(self, distance: Floats, xy: Floats, z: Floats) -> Floats:
-        """Return heights (n,) that go over into the face's towards the outline."""
-        share = smooth_step((distance / self.end_mm - 0.4) / 0.55)
+    def settled(
+        self, distance: Floats, xy: Floats, z: Floats, *, sooner: Floats | float = 0.0
+    ) -> Floats:
+        """Return heights (n,) that go over into the face's towards the outline.
+
+        ``sooner`` is by how much of the way the change starts earlier.
+        """
+        share = smooth_step((distance / self.end_mm - 0.4 + sooner) / (0.55 + 0.9 * sooner))
         return z + share * (self.face(xy) - z)
 
     def on_face(self, distance: Floats) -> Floats:
@@ -165,7 +170,10 @@ def _lower_ring(columns: Columns, distance: Floats, away: Floats) -> Floats:
     z = z + free * (soft_max(bridge, z, 2.0) - z)
     roll = 0.22 * np.exp(-(((distance - 2.6) / 1.7) ** 2))
     furrow = -0.16 * np.exp(-(((distance - 6.2) / 1.3) ** 2))
-    return np.column_stack([xy, columns.settled(distance, xy, z + (roll + furrow) * away)])
+    # Beside the outer corner the cheek falls away: a late step down to it would look like a bag.
+    temple = 0.36 * smooth_step((columns.edge[:, 0] - 3.0) / 7.0)
+    z = columns.settled(distance, xy, z + (roll + furrow) * away, sooner=temple)
+    return np.column_stack([xy, z])
 
 
 def _at_least(value: Floats, least: float) -> Floats:

@@ -9,7 +9,7 @@ from renderer.eye.lids import LidRims
 from renderer.head import lid_rims
 from renderer.head.caruncle import caruncle, outer_membrane
 from renderer.head.face_mesh import face_mesh, to_patch, to_world
-from renderer.head.lid_fit import EDGE_ROW
+from renderer.head.lid_fit import EDGE_ROW, fit_lids
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_shell import height_over_globe
 
@@ -134,3 +134,15 @@ def test_patch_and_world_space_are_inverse() -> None:
     for eye in (0, 1):
         np.testing.assert_allclose(to_patch(to_world(points, eye), eye), points)
     assert to_world(points, 0)[0, 0] == pytest.approx(-34.0)
+
+
+@pytest.mark.parametrize("pose", POSES)
+def test_the_skin_around_the_lids_never_dips_below_the_face(pose: LidPose) -> None:
+    """A dip of 0.4 mm is a ring of shade around the eye."""
+    socket = face_mesh().sockets[1]
+    patch = fit_lids(socket, pose)
+    over = patch.points_mm[..., 2] - socket.height(patch.points_mm[..., :2])
+    way = patch.across_mm - patch.across_mm[:, patch.rim_row][:, None]
+    outer = over[way > 0.6 * way[:, -1:]]
+    assert np.percentile(outer, 2) > -0.1
+    assert outer.min() > -0.45
