@@ -11,6 +11,8 @@ import pytest
 from renderer.head import lid_relief, skin_maps
 from renderer.head.buffers import TilePyramid, unroll
 from renderer.head.face_mesh import FaceMesh, face_mesh
+from renderer.head.lid_layout import ACROSS_MM, MAP_PX
+from renderer.head.lid_relief import JUNCTION_MM
 from renderer.head.skin_maps import SkinMaps
 
 
@@ -67,6 +69,27 @@ def test_wrinkles_follow_the_upper_lid_and_radiate_from_the_outer_canthus(
 
 def test_margins_are_smoother_than_lids(lids: np.ndarray) -> None:
     assert slopes(lids)[8:30].std() < 0.6 * slopes(lids)[100:400].std()
+
+
+def test_a_redder_line_runs_along_the_lower_margin_where_skin_ends(lids: np.ndarray) -> None:
+    texel_mm = ACROSS_MM / MAP_PX[0]
+    blood = lids[: MAP_PX[0], 1250:1850, 3].astype(float).mean(axis=1)
+    line, beside = (round((JUNCTION_MM + way) / texel_mm) for way in (0.0, 0.32))
+    assert blood[line] > blood[beside] + 20.0
+    assert abs(int(np.argmax(blood[:40])) - line) * texel_mm < 0.1
+
+
+def test_skin_between_lashes_and_crease_has_the_finest_crepe(
+    lids: np.ndarray, face: FaceMesh
+) -> None:
+    """Upper lid, middle: more relief from 0.6 to 2.2 mm beyond the lashes than far above."""
+    texel_mm = ACROSS_MM / MAP_PX[0]
+    edge = round(float(face.lids[0].across_mm[40:50, face.lids[0].rim_row].mean()) / texel_mm)
+    plate, above = (
+        slopes(lids)[edge + round(low / texel_mm) : edge + round(high / texel_mm), 450:600]
+        for low, high in ((0.6, 2.2), (7.0, 9.0))
+    )
+    assert plate.std() > 1.1 * above.std()
 
 
 def test_both_eyes_have_skin_of_their_own(lids: np.ndarray) -> None:
