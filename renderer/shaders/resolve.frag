@@ -10,8 +10,8 @@ out vec4 o_colour;
 
 // A toe for photographic contrast, a shoulder for catch-lights. Per channel, so that strong light
 // desaturates as film does. The form of Narkowicz 2016, "ACES filmic tone mapping curve", fitted to
-// his curve within 1 of 255 steps above u = 0.12, but rising from black with a slope of 0.6 where
-// his has 0.21: two thousandths of a sky, all that a cornea mirrors, stay to be seen.
+// his curve within 1.2 of 255 steps above u = 0.12, but rising from black with a slope of 0.6 where
+// his has 0.21: a fiftieth of the sky, all that a cornea mirrors, stays to be seen.
 vec3 tone_curve(vec3 u) {
     return clamp((u * (2.51 * u + 0.1163)) / (u * (2.4458 * u + 0.6162) + 0.1938), 0.0, 1.0);
 }
