@@ -101,7 +101,7 @@ class FrameRenderer:
             for eye in (self.spec.left, self.spec.right)
             if eye.setting("reflection", "mode") == "dynamic"
         ]
-        return CrowdCube(self.gl, max(sizes), self.scene.crowd) if sizes else None
+        return self.scene.crowd_cube(self.gl, max(sizes)) if sizes else None
 
     def _draw_view(self, view: View, time_s: float) -> dict[int, int]:
         camera = view.uniforms

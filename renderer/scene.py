@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import moderngl
 
 from renderer.clip import ClipSpec
 from renderer.crowd.crowd import Crowd
+from renderer.crowd.cube import CrowdCube
 from renderer.head.head import Head
 from renderer.head.sun_shadow import build_light
 from renderer.light import Light
@@ -25,6 +26,13 @@ class Scene:
     head: Head
     light: Light
     crowd: Crowd
+    crowd_cubes: dict[int, CrowdCube] = field(default_factory=dict)  # by size: large, slow to make
+
+    def crowd_cube(self, gl: moderngl.Context, size_px: int) -> CrowdCube:
+        """Return the cube map of the moving people at a size."""
+        if size_px not in self.crowd_cubes:
+            self.crowd_cubes[size_px] = CrowdCube(gl, size_px, self.crowd)
+        return self.crowd_cubes[size_px]
 
 
 def scene_key(spec: ClipSpec) -> SceneKey:
@@ -51,6 +59,5 @@ def build_scene(gl: moderngl.Context, spec: ClipSpec, *, last: Scene | None = No
     if last and same[0] and same[2]:
         crowd = last.crowd
         crowd.light = light  # the same sun; the head's shadow may be another
-    else:
-        crowd = Crowd(gl, spec, light)
-    return Scene(key, surroundings, head, light, crowd)
+        return Scene(key, surroundings, head, light, crowd, last.crowd_cubes)
+    return Scene(key, surroundings, head, light, Crowd(gl, spec, light))
