@@ -1,7 +1,9 @@
 """The edges of pupil and limbus to a fraction of a pixel, on rays from the eye's middle.
 
-Works on one channel of linear light. An edge is where the light crosses a level between the two
-sides' own brightness; a picture's blur moves such a crossing less than it moves the steepest point.
+Works on one channel of linear light. The limbus is where the light crosses half of the step between
+its two sides: a picture's blur moves such a crossing less than it moves the steepest point. The
+pupil's edge is lined by the ruff, nearly black in every eye, and begins where the light has risen
+by a small share of the sclera's: a share of the step itself lies further out in darker irises.
 """
 
 from __future__ import annotations
@@ -21,8 +23,10 @@ Picture = npt.NDArray[np.float32]
 
 RAYS: Final = 240
 STEPS: Final = 320  # samples along a ray
-PUPIL_LEVEL: Final = 0.1  # the pupil's edge is lined by the dark ruff, which is tissue
+PUPIL_LEVEL: Final = 0.1  # of the step, for the first look, before the sclera is known
+RUFF_LEVEL: Final = 0.006  # of the sclera's light: found within 0.005 mm in irises of every colour
 LIMBUS_LEVEL: Final = 0.5  # half of the light comes from the sclera
+SIDE: Final = 0.5  # |sin| of the rays that meet sclera, not lids
 PUPIL_TOLERANCE: Final = 0.035  # of the pupil's radius: the ruff is scalloped
 LIMBUS_TOLERANCE: Final = 0.02  # of the iris's radius
 
@@ -88,7 +92,27 @@ def find_edges(value: Picture, red: Picture, start: Candidate) -> Edges | None:
         level=LIMBUS_LEVEL,
         tolerance=LIMBUS_TOLERANCE,
     )
-    return None if limbus is None else Edges(pupil, limbus)
+    if limbus is None:
+        return None
+    middle = (pupil.ellipse.x, pupil.ellipse.y)
+    ruff = _edge_near(
+        value,
+        middle,
+        pupil.ellipse.radius,
+        reach=(0.7, 1.35),
+        level=PUPIL_LEVEL,
+        tolerance=PUPIL_TOLERANCE,
+        rise=RUFF_LEVEL * _sclera_light(value, limbus.ellipse),
+    )
+    return Edges(ruff or pupil, limbus)
+
+
+def _sclera_light(picture: Picture, limbus: Ellipse) -> float:
+    """Return the sclera's brightness to both sides of the limbus."""
+    points = limbus.points(RAYS)
+    points = points[np.abs(points[:, 1] - limbus.y) < SIDE * limbus.radius]
+    out = [limbus.x, limbus.y] + 1.1 * (points - [limbus.x, limbus.y])
+    return float(np.median(ndimage.map_coordinates(picture, out.T[::-1], order=1, mode="nearest")))
 
 
 def _edge_near(
@@ -99,8 +123,9 @@ def _edge_near(
     reach: tuple[float, float],
     level: float,
     tolerance: float,
+    rise: float | None = None,
 ) -> Edge | None:
-    points = edge_points(picture, middle, radius, reach=reach, level=level)
+    points = edge_points(picture, middle, radius, reach=reach, level=level, rise=rise)
     fitted = robust_ellipse(points, tolerance=tolerance * radius)
     if fitted is None:
         return None
@@ -117,10 +142,12 @@ def edge_points(
     *,
     reach: tuple[float, float],
     level: float,
+    rise: float | None = None,
 ) -> Array:
     """Return the points (n, 2) where rays cross from dark to bright, at most one per ray.
 
-    ``reach`` is the searched part of each ray in shares of ``radius``.
+    ``reach`` is the searched part of each ray in shares of ``radius``. The edge lies where the
+    share ``level`` of the step is climbed, or the brightness ``rise`` if that is given.
     """
     share = np.linspace(*reach, STEPS)
     angle = np.arange(RAYS) / RAYS * 2 * np.pi
@@ -130,7 +157,7 @@ def edge_points(
     outside = (x < 0) | (x > width - 1) | (y < 0) | (y > height - 1)
     polar = ndimage.map_coordinates(picture, [y, x], order=1, mode="nearest")
     polar = ndimage.gaussian_filter1d(polar, 1.0, axis=0, mode="wrap")
-    at = _crossings(polar, per_step=(reach[1] - reach[0]) / STEPS, level=level)
+    at = _crossings(polar, per_step=(reach[1] - reach[0]) / STEPS, level=level, rise=rise)
     found = np.isfinite(at)
     column = np.where(found, at, 0.0)
     found &= ~outside[np.arange(RAYS), np.rint(column).astype(np.intp)]
@@ -139,7 +166,7 @@ def edge_points(
     return np.asarray(points[found])
 
 
-def _crossings(polar: Picture, *, per_step: float, level: float) -> Array:
+def _crossings(polar: Picture, *, per_step: float, level: float, rise: float | None) -> Array:
     """Return where each row crosses its own level, in steps; NaN where it grows nowhere."""
     smooth = ndimage.gaussian_filter1d(polar, 0.02 / per_step, axis=1, mode="nearest")
     growth = np.gradient(smooth, axis=1)
@@ -153,7 +180,8 @@ def _crossings(polar: Picture, *, per_step: float, level: float) -> Array:
         return np.asarray(np.median(polar[row[:, None], columns], axis=1))
 
     inner, outer = side(-1), side(+1)
-    threshold = inner + level * (outer - inner)
+    step_up = outer - inner
+    threshold = inner + (level * step_up if rise is None else np.minimum(rise, 0.3 * step_up))
     fine = ndimage.gaussian_filter1d(polar, 0.004 / per_step, axis=1, mode="nearest")
     # The last place before the bright side that still lies below the threshold.
     bright = np.minimum(steepest + near, polar.shape[1] - 1)

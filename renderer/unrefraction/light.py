@@ -22,9 +22,13 @@ Mask = npt.NDArray[np.bool_]
 
 # Linear Rec. 709 reflectance of healthy sclera at the side of the iris (reference 1.6).
 SCLERA: Final = np.array([0.72, 0.66, 0.60], np.float32)
-# An iris in its maps' colours is drawn 1 / 0.70 times as bright as sclera of the same reflectance:
-# the maps hold what shows through a cornea (eyes.APPARENT_GAIN). Measured under an even sky.
-IRIS_TO_WHITE: Final = 0.70
+# An iris in its maps' colours is drawn 1 / 0.88 times as bright as sclera of the same reflectance:
+# the maps hold what shows through a cornea (eyes.APPARENT_GAIN = 1.3 brightens them) and the layers
+# take some of the light away (LAYERS_RETURN = 0.86 in shaders/subsurface.glsl, and the gain that
+# renderer.eye.subsurface normalises in the clip's own light). Measured under an even sky with
+# portraits at "ultra", blue and brown alike within 1 %: change either and measure again, for
+# test_unrefraction compares brightness without fitting any gain.
+IRIS_TO_WHITE: Final = 0.88
 CAST: Final = 1.5  # at most so much of a colour cast is taken for the light's
 VEIL_PERCENTILE: Final = 40.0  # of the pupil, which is black but for what the cornea mirrors
 WAVES: Final = 2  # turns of the light around the eye that are taken for light, not for tissue

@@ -23,7 +23,9 @@ from renderer.unrefraction.edges import Edges
 Array = npt.NDArray[np.float64]
 
 VISIBLE_LIMBUS_MM: Final = 5.85  # where half of the light is sclera's, beside the limbal ring
-RUFF_MM: Final = 0.035  # how far outside of the pupil's rim its dark lining begins to show
+RUFF_MM: Final = 0.005  # how far outside of the pupil's rim its dark lining begins to show
+LIMBUS_DEPTH_MM: Final = 0.035  # sclera shines from so far beneath the surface
+RIM_DEPTH_MM: Final = 0.075  # the rim lies so far behind the iris's mean surface, its plane
 MODEL_LIMBUS_MM: Final = 11.7  # the visible iris's width that the model eye stands for
 TELECENTRIC_MM: Final = 1e5  # far enough to be parallel
 CONTOUR: Final = 48
@@ -37,6 +39,7 @@ ROLL_DEG: Final = 12.0  # about the coarse search's, which goes in steps of 45
 SNAP_DEG: Final = 10.0  # rolls below this are taken for none
 PUPIL_NOISE_MM: Final = 0.025  # of single edge points: the ruff's scallops
 LIMBUS_NOISE_MM: Final = 0.05
+UPRIGHT_NOISE_MM: Final = 0.1  # once no roll is sought: else uneven sclera turns an eye 2 degrees
 
 
 @dataclass(frozen=True)
@@ -110,13 +113,15 @@ class Pose:
     def limbus(self) -> Array:
         """Return the visible limbus in the picture, (CONTOUR, 2)."""
         circle = VISIBLE_LIMBUS_MM * _CIRCLE * [1.0, self.height_ratio]
-        return self.project(on_surface(circle))
+        return self.project(on_surface(circle) - [0.0, 0.0, LIMBUS_DEPTH_MM])
 
     def pupil(self) -> Array:
         """Return the pupil's edge in the picture as the cornea shows it, (CONTOUR, 2)."""
         longer = 1.0 + self.oval[0] * _TWICE[:, :1] + self.oval[1] * _TWICE[:, 1:]
         circle = (self.pupil_mm + RUFF_MM) * longer * _CIRCLE + [self.pupil_x_mm, self.pupil_y_mm]
-        return self.project(self.entry(circle))
+        sideways = self._turn()[2][:2] / CORNEA_IOR
+        shift = sideways / math.sqrt(1.0 - float(sideways @ sideways))
+        return self.project(self.entry(circle + RIM_DEPTH_MM * shift))
 
     def _turn(self) -> Array:
         """Return the rotation (3, 3) from eye space to the camera's axes."""
@@ -165,6 +170,7 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
     limbus, pupil = edges.limbus, edges.pupil
     start_scale = limbus.ellipse.major / VISIBLE_LIMBUS_MM
     roll, spread = _roll(turn), math.radians(ROLL_DEG)
+    limbus_noise = LIMBUS_NOISE_MM
     start = np.array(
         [
             limbus.ellipse.x,
@@ -207,7 +213,7 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
             _apart(edge.points, contour, trial.px_per_mm) / noise * math.sqrt(40 / len(edge.points))
             for edge, contour, noise in (
                 (pupil, trial.pupil(), PUPIL_NOISE_MM),
-                (limbus, trial.limbus(), LIMBUS_NOISE_MM),
+                (limbus, trial.limbus(), limbus_noise),
             )
         ]
         prior = np.array(
@@ -239,7 +245,7 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
     if abs(found[-1]) > math.radians(SNAP_DEG):
         return pose(found)
     # The limbus is too nearly round to tell a small roll from none: the photograph's own vertical.
-    roll, spread = 0.0, 1e-4
+    roll, spread, limbus_noise = 0.0, 1e-4, UPRIGHT_NOISE_MM
     return pose(best([found], most=30))
 
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import ndimage
 
 from renderer.iris.maps import BASE_PX, HEIGHT_RANGE_MM, IRIS_RADIUS_MM, PUPIL_RADIUS_MM
 from renderer.textures.sizes import pack_albedo, pack_range
@@ -34,8 +33,9 @@ from renderer.unrefraction.quality import (
     check_light,
     detail_of,
 )
+from renderer.unrefraction.scale import on_scale
 from renderer.unrefraction.sighting import Crop, Sighting, Told, see_eye
-from renderer.unrefraction.texels import Texels, place_texels
+from renderer.unrefraction.texels import Texels, place_texels, sample
 from renderer.unrefraction.tissue import (
     build_height,
     surface_mm,
@@ -82,11 +82,13 @@ def recover_iris(
     follows from the focal length, else the camera is far away. ``tell`` hears of every step.
     Raises PhotographError for a photograph that shows no iris well enough.
     """
-    sighting = see_eye(photograph, limbus_mm=limbus_mm, distance_mm=distance_mm, tell=tell)
+    sighting = on_scale(
+        see_eye(photograph, limbus_mm=limbus_mm, distance_mm=distance_mm, tell=tell)
+    )
     pose, crop = sighting.pose, sighting.crop
     tell("following the light through the cornea")
     texels = place_texels(pose, BASE_PX)
-    colour = _sampled(crop.pixels, texels)
+    colour = sample(crop.pixels, texels)
     tell("telling iris from lids and glints")
     limbus, white = find_limbus(colour, texels)
     seen, clipped = _seen(colour, crop, texels, limbus, pose)
@@ -114,16 +116,6 @@ def recover_iris(
 def _ring(texels: Texels, outer_mm: float) -> Mask:
     """Mark the tissue from the pupil to a radius on the maps."""
     return np.asarray((texels.radius_mm > PUPIL_RADIUS_MM + 0.1) & (texels.radius_mm < outer_mm))
-
-
-def _sampled(pixels: Field, texels: Texels) -> Field:
-    """Return the crop's linear colours at every texel, cubic."""
-    at = [texels.y_px, texels.x_px]
-    parts = [
-        ndimage.map_coordinates(pixels[..., c], at, order=3, mode="nearest", output=np.float32)
-        for c in range(3)
-    ]
-    return np.maximum(np.stack(parts, axis=-1), 0.0)
 
 
 def _seen(

@@ -89,3 +89,13 @@ def _unstretched(x: Array, y: Array, radius: Array, pose: Pose) -> tuple[Array, 
     scale = true / np.maximum(radius, 1e-9)
     off = np.clip((IRIS_RADIUS_MM - radius) / (IRIS_RADIUS_MM - PUPIL_RADIUS_MM), 0.0, 1.0)
     return x * scale + pose.pupil_x_mm * off, y * scale + pose.pupil_y_mm * off
+
+
+def sample(pixels: Field, texels: Texels) -> Field:
+    """Return a picture's linear colours (height, width, 3) at every texel, cubic."""
+    at = [texels.y_px, texels.x_px]
+    parts = [
+        ndimage.map_coordinates(pixels[..., c], at, order=3, mode="nearest", output=np.float32)
+        for c in range(3)
+    ]
+    return np.maximum(np.stack(parts, axis=-1), 0.0)

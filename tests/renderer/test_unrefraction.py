@@ -72,20 +72,21 @@ def blue(blue_photo: np.ndarray) -> Recovery:
 def test_a_blue_iris_comes_back_from_a_photograph_straight_on(
     gl: moderngl.Context, blue: Recovery, tmp_path: Path
 ) -> None:
-    assert 2 * blue.pose.pupil_mm == pytest.approx(4.0, abs=0.1)
-    assert blue.pose.px_per_mm == pytest.approx(PHOTO_PX / 14, rel=0.005)
+    assert blue.pose.pupil_mm == pytest.approx(2.0, abs=0.02)
+    assert blue.pose.px_per_mm == pytest.approx(PHOTO_PX / 14, rel=0.002)
     middle = (PHOTO_PX - 1) / 2
     for name in ("pupil", "limbus"):
         ellipse = blue.found["ellipses"][name]
         off = math.hypot(ellipse["x_px"] - middle, ellipse["y_px"] - middle)
         assert off / blue.pose.px_per_mm < 0.1
-    assert blue.found["tilt_deg"] < 4.0
+    assert blue.found["tilt_deg"] < 2.5
     assert blue.found["iris_seen"] > 0.98
     sha256 = write_iris(blue, tmp_path / "iris.npz")
     drawn = clip(iris_file=str(tmp_path / "iris.npz"), iris_sha256=sha256)
     truth, ours = bare(gl, clip()), bare(gl, drawn)
-    # The aim is 32: bright strands of 0.05 mm beside dark gaps do not forgive 0.01 mm.
-    assert decibels(truth, ours, texel_mm=0.08) > 30.0
+    # Bright strands of 0.05 mm beside dark gaps do not forgive 0.01 mm: see the document.
+    assert decibels(truth, ours, texel_mm=0.08) > 34.0
+    assert decibels(truth, ours, texel_mm=0.02) > 32.0
 
 
 def test_a_brown_iris_comes_back_from_20_degrees_in_the_sun(
@@ -94,14 +95,13 @@ def test_a_brown_iris_comes_back_from_20_degrees_in_the_sun(
     spec = clip(iris_colour="brown", iris_seed=5, pupil_mm=3.0, gaze_yaw_deg=20.0)
     photo = developed(portrait(gl, spec, size_px=PHOTO_PX, sky=even_sky(sun=0.6)), exposure=0.8)
     found = recover_iris(photographed(photo), distance_mm=DISTANCE_MM)
-    assert 2 * found.pose.pupil_mm == pytest.approx(3.0, abs=0.1)
+    assert found.pose.pupil_mm == pytest.approx(1.5, abs=0.03)
     assert found.found["gaze_yaw_deg"] == pytest.approx(20.0, abs=2.0)
     assert found.found["gaze_pitch_deg"] == pytest.approx(0.0, abs=3.0)
     sha256 = write_iris(found, tmp_path / "iris.npz")
     drawn = replace(spec, iris_file=str(tmp_path / "iris.npz"), iris_sha256=sha256)
     truth, ours = bare(gl, spec), bare(gl, drawn)
-    assert decibels(truth, ours, texel_mm=0.08) > 32.0
-    assert decibels(truth, ours, texel_mm=0.02) > 30.0, "the sun's caustic is not known"
+    assert decibels(truth, ours, texel_mm=0.02) > 36.0
 
 
 def degraded(photo: np.ndarray, how: str) -> np.ndarray:
