@@ -36,6 +36,7 @@ DECENTRE_MM: Final = 0.15
 HEIGHT_RATIO: Final = 0.015
 PUPIL_OVAL: Final = 0.012  # of the radius, along and across: no pupil is quite round
 ROLL_DEG: Final = 12.0  # about the coarse search's, which goes in steps of 45
+ROLL: Final = 9  # its place among the fitted parameters
 SNAP_DEG: Final = 10.0  # rolls below this are taken for none
 PUPIL_NOISE_MM: Final = 0.025  # of single edge points: the ruff's scallops
 LIMBUS_NOISE_MM: Final = 0.05
@@ -242,7 +243,7 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
     # Both turns explain a shortened circle alike until the pupil's shift tells them apart.
     turns = [start * _signs(sx, sy) for sx in (6.0, -6.0) for sy in (6.0, -6.0)]
     found = best([best(turns, most=25)], most=30)
-    if abs(found[-1]) > math.radians(SNAP_DEG):
+    if abs(found[ROLL]) > math.radians(SNAP_DEG):
         return pose(found)
     # The limbus is too nearly round to tell a small roll from none: the photograph's own vertical.
     roll, spread, limbus_noise = 0.0, 1e-4, UPRIGHT_NOISE_MM
