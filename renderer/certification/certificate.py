@@ -84,7 +84,7 @@ class Certificate:
             "plan": asdict(self.plan),
             "pictures": [
                 {
-                    "case": asdict(result.case),
+                    "case": asdict(result.case) | {"name": result.case.name},
                     "regions": {name: asdict(s) for name, s in result.score.regions.items()},
                 }
                 for result in self.pictures

@@ -17,6 +17,7 @@ from renderer.certification.report import write_report
 from renderer.certification.tracer import SAFE_VARIANT, path_tracer
 from renderer.eye import eyes, maps
 from renderer.eye.sclera import ScleraMaps
+from renderer.gallery.certificate import certificate_strips
 from renderer.iris import maps as iris
 from renderer.iris.maps import IrisMaps
 
@@ -144,6 +145,9 @@ def test_the_report_shows_every_figure(certificate: Certificate, tmp_path: Path)
     for words in ("whole eye", "sun at 60 degrees", "left sum 200", "Aims"):
         assert words in report
     figures = json.loads((tmp_path / "certification.json").read_text(encoding="utf-8"))
+    (strip,) = certificate_strips(tmp_path)  # the gallery reads what is written here
+    shown = strip.tiles(lambda _shot: pytest.fail("a certificate's figures are there already"))
+    assert len(shown) == len(figures["pictures"])
     assert figures["path_tracer"] == f"mitsuba {SAFE_VARIANT}"
     assert figures["is_met"] == all(aim["is_met"] for aim in figures["aims"])
     assert len(figures["pictures"]) == len(CASES)

@@ -137,6 +137,7 @@ def off_centre_mm(seen: Sighting) -> float:
     return float(np.hypot(*(centre - middle))) / seen.pose.px_per_mm
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("colour", "pupil_mm", "yaw_deg", "pitch_deg"),
     [("dark-brown", 2.5, 0.0, 0.0), ("green", 6.0, -14.0, -14.0), ("grey", 5.0, 0.0, 12.0)],
