@@ -20,6 +20,7 @@ from renderer.head.brows import grow_brow
 from renderer.head.buffers import CellMesh, TilePyramid
 from renderer.head.clothing import knit_tile
 from renderer.head.face_mesh import FaceMesh, face_mesh, to_world
+from renderer.head.fornix import Fornix
 from renderer.head.hair import grow_hair, hair_cap
 from renderer.head.lashes import grow_lashes
 from renderer.head.lid_pose import lid_poses
@@ -55,6 +56,7 @@ class Head:
             "depth": build_program(gl, "depth.vert", fragment="depth.frag"),
             "tears": build_program(gl, "tears.vert", fragment="tears.frag"),
         }
+        self._fornix = Fornix(gl)
         self._skin_maps = SkinMaps(gl, face_mesh())
         self._knit = TilePyramid(gl, knit_tile())
         self._face = face_mesh(poses)
@@ -95,6 +97,7 @@ class Head:
         close = distance < CLOSE_MM
         for mesh in [*(self._close if close else self._distant), self._mesh("cap")]:
             mesh.draw(skin, clip, camera_mm=camera)
+        self._fornix.draw(clip, light.sky)
         fabric.set(**view, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
         self.gl.disable(moderngl.CULL_FACE)  # the roll neck shows its inside
         self._mesh("cloth").draw(fabric, clip)
