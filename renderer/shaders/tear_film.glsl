@@ -5,7 +5,7 @@
 uniform sampler2D u_micro_relief;  // slopes along u and v, mean square slope, a smooth field
 
 const float CORNEA_WAVES = 0.022;        // of the sclera's relief: 0.15 degrees
-const float LIMBUS_UNEVENNESS_MM = 0.03;
+const float LIMBUS_UNEVENNESS_MM = 0.016;
 const vec3 LIMBAL_RING = vec3(0.66, 0.70, 0.76);  // what thin tissue over the dark angle returns
 
 vec4 relief_tile(vec2 at_mm) {

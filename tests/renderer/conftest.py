@@ -20,10 +20,22 @@ LATERAL_CANTHUS_MM: Final = 13.0  # towards the temple
 MEDIAL_CANTHUS_MM: Final = 17.0  # towards the nose; the inner 4-5 mm hold the caruncle
 
 
+SHARED: Final[list[moderngl.Context]] = []
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup() -> None:
+    """Make the shared context current: a test that opens its own leaves none."""
+    for context in SHARED:
+        context.__enter__()
+
+
 @pytest.fixture(scope="session")
 def gl() -> Iterator[moderngl.Context]:
     context = create_context()
+    SHARED.append(context)
     yield context
+    SHARED.clear()
     context.release()
 
 
