@@ -11,28 +11,8 @@ from renderer.clip import ClipSpec
 from renderer.context import create_context, identify
 from renderer.exchange.exr import Attribute, write_exr
 from renderer.frame import FrameRenderer
-from renderer.picture import EXPOSURE, Pixels
+from renderer.picture import EXPOSURE
 from renderer.sources import code_version
-
-
-def render_still(
-    spec: ClipSpec,
-    azimuth_deg: float = 0.0,
-    *,
-    elevation_deg: float = 0.0,
-    time_s: float = 0.0,
-    wireframe: bool = False,
-) -> Pixels:
-    """Render one frame, (height, width, 3) uint8 sRGB, first row on top.
-
-    ``wireframe`` draws the eyes' meshes as lines, which shows their tessellation.
-    """
-    gl = create_context()
-    try:
-        renderer = FrameRenderer(gl, spec, wireframe=wireframe)
-        return renderer.render(azimuth_deg, time_s=time_s, elevation_deg=elevation_deg).pixels
-    finally:
-        gl.release()
 
 
 def write_still(
@@ -44,7 +24,10 @@ def write_still(
     time_s: float = 0.0,
     wireframe: bool = False,
 ) -> None:
-    """Render one frame into a file; see ``write_frame``."""
+    """Render one frame into a file; see ``write_frame``.
+
+    ``wireframe`` draws the eyes' meshes as lines, which shows their tessellation.
+    """
     gl = create_context()
     try:
         write_frame(

@@ -9,6 +9,7 @@ by a small share of the sclera's: a share of the step itself lies further out in
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -54,54 +55,27 @@ def find_edges(value: Picture, red: Picture, start: Candidate) -> Edges | None:
     ``value`` shows the pupil best (the strongest channel), ``red`` the limbus (sclera is warmer
     than most irises).
     """
-    pupil = _edge_near(
-        value,
-        (start.x, start.y),
-        start.pupil,
-        reach=(0.5, 1.7),
-        level=PUPIL_LEVEL,
-        tolerance=PUPIL_TOLERANCE,
-    )
+    pupil_near = partial(_edge_near, value, level=PUPIL_LEVEL, tolerance=PUPIL_TOLERANCE)
+    limbus_near = partial(_edge_near, red, level=LIMBUS_LEVEL)
+    pupil = pupil_near((start.x, start.y), start.pupil, reach=(0.5, 1.7))
     if pupil is None:
         return None
     middle = (pupil.ellipse.x, pupil.ellipse.y)
-    pupil = _edge_near(
-        value,
-        middle,
-        pupil.ellipse.radius,
-        reach=(0.7, 1.35),
-        level=PUPIL_LEVEL,
-        tolerance=PUPIL_TOLERANCE,
-    )
-    limbus = _edge_near(
-        red,
-        middle,
-        start.limbus,
-        reach=(0.72, 1.3),
-        level=LIMBUS_LEVEL,
-        tolerance=2.5 * LIMBUS_TOLERANCE,
-    )
+    pupil = pupil_near(middle, pupil.ellipse.radius, reach=(0.7, 1.35))
+    limbus = limbus_near(middle, start.limbus, reach=(0.72, 1.3), tolerance=2.5 * LIMBUS_TOLERANCE)
     if pupil is None or limbus is None:
         return None
     middle = (limbus.ellipse.x, limbus.ellipse.y)
-    limbus = _edge_near(
-        red,
-        middle,
-        limbus.ellipse.radius,
-        reach=(0.82, 1.2),
-        level=LIMBUS_LEVEL,
-        tolerance=LIMBUS_TOLERANCE,
+    limbus = limbus_near(
+        middle, limbus.ellipse.radius, reach=(0.82, 1.2), tolerance=LIMBUS_TOLERANCE
     )
     if limbus is None:
         return None
     middle = (pupil.ellipse.x, pupil.ellipse.y)
-    ruff = _edge_near(
-        value,
+    ruff = pupil_near(
         middle,
         pupil.ellipse.radius,
         reach=(0.7, 1.35),
-        level=PUPIL_LEVEL,
-        tolerance=PUPIL_TOLERANCE,
         rise=RUFF_LEVEL * _sclera_light(value, limbus.ellipse),
     )
     return Edges(ruff or pupil, limbus)

@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 from PIL import ExifTags, Image, ImageCms, ImageOps, UnidentifiedImageError
+from PIL.TiffImagePlugin import TiffImageFile
 from scipy import ndimage
 
 from renderer.unrefraction.refusal import PhotographError
@@ -142,8 +143,8 @@ def _bits(data: bytes) -> int:
     if data.startswith(b"\x89PNG\r\n\x1a\n"):
         return data[24]
     with Image.open(io.BytesIO(data)) as opened:
-        if opened.format == "TIFF":
-            bits = opened.tag_v2.get(258, (8,))  # type: ignore[attr-defined]  # TIFF's alone
+        if isinstance(opened, TiffImageFile):
+            bits = opened.tag_v2.get(258, (8,))
             return int(max(bits) if isinstance(bits, tuple) else bits)
     return 8
 

@@ -76,7 +76,8 @@ def instructions(here: Here, visitor: AVisitor) -> Response:
 
 
 @router.post("/instructions")
-def read_instructions(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:  # noqa: ARG001 - the form carries only its proof
+def read_instructions(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
     """Note that the instructions were read."""
+    del fields  # the form carries only its proof
     progress.finish_instructions(here.db, visitor.participant, key="instructions")
     return to_current(here, visitor)

@@ -24,7 +24,7 @@ RESEARCHER_COOKIE: Final = "ocularist_researcher"
 REMEMBER_S: Final = 60 * 24 * 3600
 
 
-class Elsewhere(Exception):  # noqa: N818 - no error: the answer is to go to another page
+class ElsewhereError(Exception):
     """The asker belongs on another page."""
 
     def __init__(self, url: str) -> None:
@@ -83,7 +83,7 @@ MaybeVisitor = Annotated[Visitor | None, Depends(visitor_or_none)]
 def a_visitor(visitor: MaybeVisitor) -> Visitor:
     """Return the participant; others are led to the first page."""
     if visitor is None:
-        raise Elsewhere("/")
+        raise ElsewhereError("/")
     return visitor
 
 
@@ -117,7 +117,7 @@ def step_of(here: Here, visitor: Visitor, *expected: str) -> Step:
     """Return where a participant is; leads them there if it is none of the ``expected`` steps."""
     step = progress.current_step(here.db, visitor.participant)
     if expected and step.name not in expected:
-        raise Elsewhere(step_url(step))
+        raise ElsewhereError(step_url(step))
     return step
 
 
@@ -163,7 +163,7 @@ def signed_in(request: Request, here: Here) -> SignedIn:
     found = read_researcher(here.secret, cookie)
     researcher = None if found is None else researchers.by_id(here.db, found)
     if researcher is None:
-        raise Elsewhere("/researcher/sign-in")
+        raise ElsewhereError("/researcher/sign-in")
     return SignedIn(researcher, csrf_token(here.secret, cookie), cookie)
 
 

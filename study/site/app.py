@@ -31,7 +31,7 @@ from study.site import (
     results,
     trial,
 )
-from study.site.access import Elsewhere, ForgedError
+from study.site.access import ElsewhereError, ForgedError
 from study.site.headers import SecureHeaders
 from study.site.media import ClipShelf
 from study.site.place import NoStudyError, Place
@@ -85,8 +85,8 @@ def create_app(settings: Settings, *, study: Study | None = None) -> FastAPI:
 
 
 def _handle_errors(app: FastAPI) -> None:
-    @app.exception_handler(Elsewhere)
-    async def lead(request: Request, error: Elsewhere) -> Response:
+    @app.exception_handler(ElsewhereError)
+    async def lead(request: Request, error: ElsewhereError) -> Response:
         if request.url.path in FOR_SCRIPTS:  # a script must not take another page for a "yes"
             return _answer(request, 401, "NOT-SIGNED-IN")
         return RedirectResponse(error.url, status_code=303)
