@@ -32,7 +32,7 @@ BEAT_S: Final = 1.0  # how often progress is written while a clip is rendered
 PER_FRAME: Final = ("spec", "iris_px", "visible_px")  # stays in the manifest, too long for a row
 
 
-class _Stopped(Exception):  # noqa: N818 - not an error: it carries a wish through the renderer
+class _StoppedError(Exception):
     """Rendering ends here: the worker was told to stop, or the job is no longer its own."""
 
 
@@ -87,7 +87,7 @@ def _work(db: Database, media_folder: Path, job: Job, task: _Task) -> bool:
         if record is None:
             with _Beat(db, job, task) as beat:
                 record = task.render(job.spec, media_folder, beat.hear)
-    except _Stopped:
+    except _StoppedError:
         jobs.release(db, job, worker=task.worker)
         return False
     except Exception as error:
@@ -135,7 +135,7 @@ class _Beat:
         """Take the renderer's progress; ends the rendering when the worker has to stop."""
         self.progress = progress
         if self.task.stop.is_set() or self.is_lost:
-            raise _Stopped
+            raise _StoppedError
 
     def _keep(self) -> None:
         while not self._ended.wait(BEAT_S):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import Annotated, Final
 
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import HTMLResponse, Response
@@ -83,7 +83,7 @@ def agree(
     request: Request,
     here: Here,
     visitor: MaybeVisitor,
-    fields: dict[str, list[str]] = Depends(read_form),  # noqa: B008 - FastAPI's way to inject
+    fields: Annotated[dict[str, list[str]], Depends(read_form)],
 ) -> Response:
     """Enrol a participant who agrees to everything in the version that they read."""
     if visitor is not None:  # a double click, or Back and send again

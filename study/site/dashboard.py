@@ -109,7 +109,8 @@ def people(here: Here, researcher: ResearcherHere) -> Response:
 
 
 @router.post("/researcher/jobs/{clip_id}/again")
-def again(here: Here, fields: ResearchersForm, clip_id: str) -> Response:  # noqa: ARG001 - the form carries only its proof
+def again(here: Here, fields: ResearchersForm, clip_id: str) -> Response:
     """Queue a clip again, whatever became of it."""
+    del fields  # the form carries only its proof
     jobs.requeue(here.db, [clip_id])
     return redirect("/researcher")
