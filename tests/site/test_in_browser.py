@@ -57,9 +57,11 @@ def is_own(address: str, site_url: str) -> bool:
 def walk_to_preparing(page: Page, url: str) -> None:
     page.goto(url)
     page.get_by_role("link", name="Begin").click()
+    agree = page.get_by_role("button", name="I agree and want to take part")
+    expect(agree).to_be_visible()  # all() does not wait: on the page before there is no box
     for box in page.get_by_role("checkbox").all():
         box.check()
-    page.get_by_role("button", name="I agree and want to take part").click()
+    agree.click()
     page.get_by_label("How old are you?").fill("33")
     page.get_by_role("button", name="Continue").click()
     page.get_by_role("button", name="I am ready").click()
