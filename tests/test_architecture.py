@@ -15,7 +15,10 @@ ROOT = Path(__file__).parent.parent
 OURS = ("analysis", "renderer", "study")
 PURE_RENDERER = (
     "renderer",
-    *(f"renderer.{name}" for name in ("camera", "clip", "detail", "manifest", "sources")),
+    *(
+        f"renderer.{name}"
+        for name in ("camera", "clip", "detail", "lod_choice", "lod_policy", "manifest", "sources")
+    ),
 )
 # What study may know of the renderer; the entry point alone starts GL.
 STIMULI = set(PURE_RENDERER)
