@@ -9,6 +9,7 @@ from __future__ import annotations
 import fcntl
 import hashlib
 import os
+import socket
 import statistics
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -97,17 +98,32 @@ def render_clip(
         progress(1.0)
         return kept
     folder.mkdir(parents=True, exist_ok=True)
+    part = folder / f".{spec.clip_id}.{_host()}.{os.getpid()}.part.mp4"
+    try:
+        record = make_clip(spec, part, source=source, progress=progress)
+        part.replace(folder / record.file)
+    finally:
+        part.unlink(missing_ok=True)
+    keep_record(record, folder)
+    return record
+
+
+def make_clip(
+    spec: ClipSpec,
+    path: Path,
+    *,
+    source: FrameSource,
+    progress: Progress = lambda _share: None,
+) -> ClipRecord:
+    """Render, encode and check one clip into ``path``; no folder's manifest is touched."""
     started = time.perf_counter()
-    part = folder / f".{spec.clip_id}.{os.getpid()}.part.mp4"
-    notes = _encode(spec, part, source, progress)
-    fidelity = _compare(part, notes, size=(spec.width, spec.height))
-    file = folder / f"{spec.clip_id}.mp4"
-    data = part.read_bytes()
-    part.replace(file)
-    record = ClipRecord(
+    notes = _encode(spec, path, source, progress)
+    fidelity = _compare(path, notes, size=(spec.width, spec.height))
+    data = path.read_bytes()
+    return ClipRecord(
         clip_id=spec.clip_id,
         spec=spec.to_dict(),
-        file=file.name,
+        file=f"{spec.clip_id}.mp4",
         file_sha256=hashlib.sha256(data).hexdigest(),
         file_bytes=len(data),
         raw_sha256=notes.digest.hexdigest(),
@@ -128,18 +144,26 @@ def render_clip(
         gl_version=source.gl_version,
         code_version=code_version(),
     )
+
+
+def keep_record(record: ClipRecord, folder: Path) -> None:
+    """Add a clip's record to the folder's manifest; several processes may do so at once."""
     with _locked(folder):
         manifest = read_manifest(folder)
         manifest.add(record)
         write_manifest(manifest, folder)
-    return record
 
 
 def remove_parts(folder: Path) -> None:
-    """Remove what processes that are gone left unfinished; those at work keep theirs."""
-    for part in folder.glob(".*.part.mp4"):
-        if not _is_alive(int(part.name.split(".")[2])):
+    """Remove what this machine's ended processes left unfinished; those at work keep theirs."""
+    for part in folder.glob(f".*.{_host()}.*.part.mp4"):
+        if not _is_alive(int(part.name.split(".")[3])):
             part.unlink(missing_ok=True)
+
+
+def _host() -> str:
+    """Return this machine's name: a folder that several share holds parts of all of them."""
+    return socket.gethostname().replace(".", "-")
 
 
 def _is_alive(pid: int) -> bool:

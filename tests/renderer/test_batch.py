@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -111,8 +112,12 @@ def test_after_kill_9_the_batch_resumes_and_keeps_what_was_done(tmp_path: Path) 
     )
     assert killed.returncode == -signal.SIGKILL
     assert list(read_manifest(tmp_path).clips) == [SPEC.clip_id]
-    (tmp_path / f".{SPEC.clip_id}.{_gone_pid()}.part.mp4").write_bytes(b"cut")
-    (tmp_path / f".{SPEC.clip_id}.{os.getpid()}.part.mp4").write_bytes(b"at work")
+    host = socket.gethostname().replace(".", "-")
+    assert len(list(tmp_path.glob(".*.part.mp4"))) == 1  # the second clip's, of the killed process
+    at_work = [f".{SPEC.clip_id}.{host}.{os.getpid()}.part.mp4"]
+    at_work += [f".{SPEC.clip_id}.elsewhere.{_gone_pid()}.part.mp4"]
+    for name in at_work:
+        (tmp_path / name).write_bytes(b"at work")
     source = Pattern()
     specs = [SPEC, replace(SPEC, iris_seed=2), replace(SPEC, iris_seed=3)]
     heard: list[tuple[int, float]] = []
@@ -121,11 +126,19 @@ def test_after_kill_9_the_batch_resumes_and_keeps_what_was_done(tmp_path: Path) 
     )
     assert source.asked == [spec.clip_id for spec in specs[1:]]
     assert [record.clip_id for record in records] == [spec.clip_id for spec in specs]
-    parts = [path.name for path in tmp_path.glob(f".{SPEC.clip_id}.*.part.mp4")]
-    assert parts == [f".{SPEC.clip_id}.{os.getpid()}.part.mp4"]
+    assert {path.name for path in tmp_path.glob(".*.part.mp4")} == set(at_work)
     assert heard[0] == (0, 1.0)
     assert heard[-1] == (2, 1.0)
     assert len(json.loads((tmp_path / MANIFEST_NAME).read_text())["clips"]) == 3
+
+
+def test_a_clip_that_fails_leaves_nothing_behind(tmp_path: Path) -> None:
+    def stop(_share: float) -> None:
+        raise RuntimeError("stopped")
+
+    with pytest.raises(RuntimeError, match="stopped"):
+        render_clip(SPEC, tmp_path, source=Pattern(), progress=stop)
+    assert list(tmp_path.iterdir()) == []
 
 
 def _gone_pid() -> int:
