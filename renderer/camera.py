@@ -7,7 +7,7 @@ the viewer; the origin lies midway between the centres of the two globes.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, TypedDict
 
 import numpy as np
@@ -73,32 +73,72 @@ def gaze_deg(spec: ClipSpec, eye: int) -> tuple[float, float]:
 
 def camera_radius_mm(distance: str) -> float:
     """Return the orbit's radius that gives the distance's iris diameter at azimuth 0."""
-    focal_px = REFERENCE_LINES / 2 / math.tan(math.radians(VERTICAL_FOV_DEG) / 2)
-    return focal_px * IRIS_DIAMETER_MM / IRIS_PX[distance] + LIMBUS_Z_MM
+    return radius_of_px(IRIS_PX[distance])
 
 
-def views(spec: ClipSpec, azimuth_deg: float, elevation_deg: float = 0.0) -> tuple[View, ...]:
-    """Return the picture's views: two half frames at macroscopic, elsewhere one."""
-    radius = camera_radius_mm(spec.distance)
-    half = spec.width // 2
+def radius_of_px(distance_px: float) -> float:
+    """Return the radius at which an iris is ``distance_px`` wide on 1080 lines, seen in front."""
+    return focal_px(REFERENCE_LINES) * IRIS_DIAMETER_MM / distance_px + LIMBUS_Z_MM
+
+
+def focal_px(lines: float) -> float:
+    """Return the lens's focal length in pixels of a picture with so many lines."""
+    return lines / 2 / math.tan(math.radians(VERTICAL_FOV_DEG) / 2)
+
+
+def views(
+    spec: ClipSpec,
+    azimuth_deg: float,
+    elevation_deg: float = 0.0,
+    *,
+    distance_px: float | None = None,
+    eyes: tuple[int, ...] = (0, 1),
+) -> tuple[View, ...]:
+    """Return the picture's views: two half frames of an orbit at macroscopic, elsewhere one.
+
+    ``eyes`` narrows what is shown as stimulus; one eye alone has the whole picture at macroscopic.
+    ``distance_px`` puts the camera where an iris is so wide on 1080 lines. Without it an orbit's
+    camera keeps its distance and an approach's is at its end.
+    """
+    is_approach = spec.motion == "approach"
+    if distance_px is None:
+        distance_px = spec.approach_end_px if is_approach else IRIS_PX[spec.distance]
+    share = spec.width // len(eyes)
     rows: tuple[tuple[tuple[int, int, int, int], npt.NDArray[np.float64], tuple[int, ...]], ...]
-    if spec.distance == "macroscopic":
+    if spec.distance == "macroscopic" and not is_approach:
         rows = tuple(
-            ((eye * half, 0, half, spec.height), eye_centre_mm(eye), (eye,)) for eye in (0, 1)
+            ((place * share, 0, share, spec.height), eye_centre_mm(eye), (eye,))
+            for place, eye in enumerate(eyes)
         )
     else:
-        rows = (((0, 0, spec.width, spec.height), np.zeros(3), (0, 1)),)
+        rows = (((0, 0, spec.width, spec.height), np.zeros(3), eyes),)
     return tuple(
         _view(
             rectangle,
             target,
-            radius_mm=radius,
+            radius_mm=radius_of_px(distance_px),
             azimuth_deg=azimuth_deg,
             elevation_deg=elevation_deg,
-            eyes=eyes,
+            eyes=shown,
         )
-        for rectangle, target, eyes in rows
+        for rectangle, target, shown in rows
     )
+
+
+def cropped(view: View, box: tuple[int, int, int, int]) -> View:
+    """Return the view of a part of a picture as a picture of its own.
+
+    ``box`` is x, y, width, height in pixels from the view's lower left. What it shows has the same
+    size in pixels as before.
+    """
+    x, y, width, height = box
+    across, up = view.rectangle[2] / width, view.rectangle[3] / height
+    cut = np.eye(4)
+    cut[0, 0], cut[1, 1] = across, up
+    cut[0, 3] = across - 2 * x / width - 1
+    cut[1, 3] = up - 2 * y / height - 1
+    projection = (cut @ view.projection).astype(np.float32)
+    return replace(view, rectangle=(0, 0, width, height), projection=projection)
 
 
 def _view(
@@ -146,16 +186,22 @@ def perspective(fov_deg: float, aspect: float, near_mm: float, far_mm: float) ->
     return matrix.astype(np.float32)
 
 
-def iris_px(spec: ClipSpec, azimuth_deg: float) -> tuple[float, float]:
+def iris_px(
+    spec: ClipSpec, azimuth_deg: float, *, distance_px: float | None = None
+) -> tuple[float, float]:
     """Return the iris's diameter on the picture in pixels, left and right eye.
 
     The larger axis of the projected limbus: the size that decides which details can be seen.
     """
     diameters = {}
-    for view in views(spec, azimuth_deg):
-        focal_px = view.rectangle[3] / 2 / math.tan(math.radians(VERTICAL_FOV_DEG) / 2)
+    for view in views(spec, azimuth_deg, distance_px=distance_px):
         for eye in view.eyes:
             limbus = eye_centre_mm(eye) + np.array([0.0, 0.0, LIMBUS_Z_MM])
             depth = -(view.view_matrix @ np.append(limbus, 1.0))[2]
-            diameters[eye] = float(focal_px * IRIS_DIAMETER_MM / depth)
+            diameters[eye] = float(focal_px(view.rectangle[3]) * IRIS_DIAMETER_MM / depth)
     return diameters[0], diameters[1]
+
+
+def iris_px_of_frame(spec: ClipSpec, frame: int) -> tuple[float, float]:
+    """Return ``iris_px`` in a frame of the clip (0-based)."""
+    return iris_px(spec, spec.azimuth_deg(frame), distance_px=spec.distance_px(frame))

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Collection, Mapping
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any, Final
 
+from renderer.clip_checks import clip_faults
 from renderer.detail import Detail
+from renderer.lod_choice import SWITCHINGS, LodPolicy
 
 DISTANCES: Final = ("macroscopic", "near", "medium", "far")
-MOTIONS: Final = ("orbit",)
+MOTIONS: Final = ("orbit", "approach")
 DIRECTIONS: Final = ("rightward", "leftward")
 PRESETS: Final = ("thesis", "calibrated")
 IRIS_COLOURS: Final = ("blue", "grey", "green", "hazel", "amber", "brown", "dark-brown")
@@ -23,6 +25,46 @@ CROWDS: Final = (0, 5)
 CAUSTIC_PATTERNS: Final = ("computed", "painted")
 # Where files lie: the contents' hash beside each path decides what the frames are.
 PATHS: Final = ("environment_file", "iris_file")
+# Fields that names do not tell while they have their defaults: clips without them keep theirs.
+_LATER: Final = (
+    "left_switching",
+    "right_switching",
+    "lod_policy",
+    "approach_start_px",
+    "approach_end_px",
+    "approach_azimuth_deg",
+)
+_CHOICES: Final[Mapping[str, Collection[object]]] = {
+    "distance": DISTANCES,
+    "motion": MOTIONS,
+    "orbit_direction": DIRECTIONS,
+    "preset": PRESETS,
+    "iris_colour": IRIS_COLOURS,
+    "environment": ENVIRONMENTS,
+    "crowd": CROWDS,
+    "caustic_pattern": CAUSTIC_PATTERNS,
+    "left_switching": SWITCHINGS,
+    "right_switching": SWITCHINGS,
+}
+_RANGES: Final = {
+    "orbit_deg": (0.0, 180.0),
+    "duration_s": (0.03, 60.0),
+    "fps": (1, 120),
+    "width": (64, 7680),
+    "height": (64, 4320),
+    "pupil_mm": (1.5, 8.0),
+    "gaze_yaw_deg": (-35.0, 35.0),
+    "gaze_pitch_deg": (-35.0, 25.0),
+    "vergence_deg": (0.0, 20.0),
+    "blink": (0.0, 1.0),
+    "environment_turn_deg": (-180.0, 180.0),
+    "environment_exposure_ev": (-10.0, 10.0),
+    "sun_azimuth_deg": (-180.0, 180.0),
+    "sun_elevation_deg": (0.0, 90.0),
+    "approach_start_px": (4.0, 400.0),
+    "approach_end_px": (4.0, 400.0),
+    "approach_azimuth_deg": (-60.0, 60.0),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +86,15 @@ class ClipSpec:
 
     ``iris_file`` is an iris taken from a photograph (``renderer.iris.file``), ``iris_sha256`` its
     contents. ``iris_colour`` then decides nothing and ``iris_seed`` the sclera alone.
+
+    ``motion`` "approach" drives one camera, which looks midway between the eyes throughout, from
+    where an iris is ``approach_start_px`` wide on 1080 lines to ``approach_end_px``; it grows by
+    the same factor from frame to frame. The azimuth stays ``approach_azimuth_deg``, to the other
+    side where the ``orbit_direction`` is "leftward". ``distance`` then names a group of clips.
+
+    ``left_switching`` and ``right_switching`` say whether an eye keeps its LoD ("fixed") or takes
+    it from ``lod_policy`` by its size in pixels, "blended" or in an "instant". Its own LoD is then
+    the policy's finest.
     """
 
     left: Detail
@@ -76,84 +127,17 @@ class ClipSpec:
     crowd: int = 5
     subsurface_samples: int = 0
     caustic_pattern: str = "computed"
+    left_switching: str = "fixed"
+    right_switching: str = "fixed"
+    lod_policy: LodPolicy | None = None
+    approach_start_px: float = 12.0
+    approach_end_px: float = 160.0
+    approach_azimuth_deg: float = 0.0
 
     def __post_init__(self) -> None:
-        faults = self._faults()
+        faults = clip_faults(self, _CHOICES, _RANGES)
         if faults:
             raise ValueError("; ".join(faults))
-
-    def _faults(self) -> list[str]:
-        choices = {
-            "distance": DISTANCES,
-            "motion": MOTIONS,
-            "orbit_direction": DIRECTIONS,
-            "preset": PRESETS,
-            "iris_colour": IRIS_COLOURS,
-            "environment": ENVIRONMENTS,
-            "crowd": CROWDS,
-            "caustic_pattern": CAUSTIC_PATTERNS,
-        }
-        ranges = {
-            "orbit_deg": (0.0, 180.0),
-            "duration_s": (0.03, 60.0),
-            "fps": (1, 120),
-            "width": (64, 7680),
-            "height": (64, 4320),
-            "pupil_mm": (1.5, 8.0),
-            "gaze_yaw_deg": (-35.0, 35.0),
-            "gaze_pitch_deg": (-35.0, 25.0),
-            "vergence_deg": (0.0, 20.0),
-            "blink": (0.0, 1.0),
-            "environment_turn_deg": (-180.0, 180.0),
-            "environment_exposure_ev": (-10.0, 10.0),
-            "sun_azimuth_deg": (-180.0, 180.0),
-            "sun_elevation_deg": (0.0, 90.0),
-        }
-        faults = [
-            f'{name}: unknown value "{getattr(self, name)}"; choose one of '
-            + ", ".join(map(str, accepted))
-            for name, accepted in choices.items()
-            if getattr(self, name) not in accepted
-        ]
-        faults += [
-            f"{name}: {getattr(self, name)} lies outside {low} to {high}"
-            for name, (low, high) in ranges.items()
-            if not low <= getattr(self, name) <= high
-        ]
-        faults += self._environment_faults()
-        if bool(self.iris_file) != bool(re.fullmatch("[0-9a-f]{64}", self.iris_sha256)):
-            faults.append(
-                "iris_sha256: an iris_file needs its SHA-256, 64 hexadecimal digits; "
-                "leave both empty for the iris of iris_seed and iris_colour"
-            )
-        if self.subsurface_samples != 0 and not 2 <= self.subsurface_samples <= 200:
-            faults.append(
-                f"subsurface_samples: {self.subsurface_samples} is neither 0 nor within 2 to 200"
-            )
-        faults += [
-            f"{name}: {getattr(self, name)} is odd; H.264 in 4:2:0 needs an even number of pixels"
-            for name in ("width", "height")
-            if getattr(self, name) % 2
-        ]
-        return faults
-
-    def _environment_faults(self) -> list[str]:
-        given = {
-            "environment_file": self.environment_file,
-            "environment_sha256": self.environment_sha256,
-        }
-        if self.environment != "image":
-            return [
-                f'{name}: only an environment "image" has one; leave it empty'
-                for name, value in given.items()
-                if value
-            ]
-        faults = []
-        if not self.environment_file:
-            faults.append('environment_file: empty; an environment "image" needs a picture')
-        if not re.fullmatch("[0-9a-f]{64}", self.environment_sha256):
-            faults.append("environment_sha256: needs the picture's SHA-256, 64 hexadecimal digits")
-        return faults
 
     @property
     def frame_count(self) -> int:
@@ -162,10 +146,24 @@ class ClipSpec:
 
     def azimuth_deg(self, frame: int) -> float:
         """Return the camera's azimuth in ``frame`` (0-based), linear over the orbit."""
-        if self.frame_count == 1:
+        if self.motion == "approach":
+            turn = self.approach_azimuth_deg
+        elif self.frame_count == 1:
             return 0.0
-        turn = self.orbit_deg * (frame / (self.frame_count - 1) - 0.5)
+        else:
+            turn = self.orbit_deg * (frame / (self.frame_count - 1) - 0.5)
         return turn if self.orbit_direction == "rightward" else -turn
+
+    def distance_px(self, frame: int) -> float | None:
+        """Return how far off the camera of an approach is: as an iris's diameter on 1080 lines.
+
+        None for an orbit, whose ``distance`` says it.
+        """
+        if self.motion != "approach":
+            return None
+        way = frame / max(1, self.frame_count - 1)
+        growth: float = self.approach_end_px / self.approach_start_px
+        return float(self.approach_start_px * growth**way)
 
     def time_s(self, frame: int) -> float:
         """Return the scene's time in ``frame``: the crowd moves with it."""
@@ -173,7 +171,13 @@ class ClipSpec:
 
     def swapped(self) -> ClipSpec:
         """Exchange the two eyes' LoDs in the same scene (never a flipped picture)."""
-        return replace(self, left=self.right, right=self.left)
+        return replace(
+            self,
+            left=self.right,
+            right=self.left,
+            left_switching=self.right_switching,
+            right_switching=self.left_switching,
+        )
 
     def resized(self, width: int, height: int) -> ClipSpec:
         """Return the same clip at another picture size in pixels."""
@@ -186,13 +190,25 @@ class ClipSpec:
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> ClipSpec:
         """Read what ``to_dict`` wrote; raises TypeError for an unknown key."""
+        eyes = {side: Detail(**values[side]) for side in ("left", "right")}
+        policy = values.get("lod_policy")
         return cls(
-            **{**values, "left": Detail(**values["left"]), "right": Detail(**values["right"])}
+            **{**values, **eyes, "lod_policy": LodPolicy.from_dict(policy) if policy else None}
         )
 
     @property
     def clip_id(self) -> str:
-        """The clip's name: 20 hexadecimal digits of SHA-256 over everything but paths."""
-        values = {name: value for name, value in self.to_dict().items() if name not in PATHS}
+        """The clip's name: 20 hexadecimal digits of SHA-256 over everything but paths.
+
+        Fields that came later count where they differ from their defaults.
+        """
+        untold = {
+            field.name
+            for field in fields(self)
+            if field.name in _LATER and getattr(self, field.name) == field.default
+        }
+        values = {
+            name: value for name, value in self.to_dict().items() if name not in {*PATHS, *untold}
+        }
         text = json.dumps(values, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()[:20]

@@ -20,10 +20,12 @@ PEAK: Final = 255.0
 IDENTICAL_DB: Final = 99.0  # what a PSNR without any error is written as
 
 
-def eye_rectangles(spec: ClipSpec, azimuth_deg: float) -> tuple[Rectangle, Rectangle]:
+def eye_rectangles(
+    spec: ClipSpec, azimuth_deg: float, *, distance_px: float | None = None
+) -> tuple[Rectangle, Rectangle]:
     """Return each eye's rectangle on the picture as (rows, columns), left and right eye."""
     found: dict[int, Rectangle] = {}
-    for view in views(spec, azimuth_deg):
+    for view in views(spec, azimuth_deg, distance_px=distance_px):
         x0, y0, width, height = view.rectangle
         for eye in view.eyes:
             clip = view.projection @ view.view_matrix @ np.append(eye_centre_mm(eye), 1.0)
