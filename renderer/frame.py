@@ -27,7 +27,11 @@ class Frame:
 
 
 class FrameRenderer:
-    """Render the frames of one clip. Pass ``scene`` to reuse the last clip's as far as it fits."""
+    """Render the frames of one clip. Pass ``scene`` to reuse the last clip's as far as it fits.
+
+    ``eyes`` narrows what is drawn to one eye, (0,) left or (1,) right, which then has the whole
+    picture at macroscopic: what one eye costs. Clips have both.
+    """
 
     def __init__(
         self,
@@ -36,10 +40,12 @@ class FrameRenderer:
         *,
         scene: Scene | None = None,
         wireframe: bool = False,
+        eyes: tuple[int, ...] = (0, 1),
     ) -> None:
         self.gl = gl
         self.spec = spec
         self.wireframe = wireframe
+        self._drawn_eyes = eyes
         if scene is None or scene.key != scene_key(spec):
             scene = build_scene(gl, spec, last=scene)
         self.scene = scene
@@ -53,15 +59,24 @@ class FrameRenderer:
             static_cube=scene.surroundings.cube,
             crowd_cube=self._crowd_cube.texture if self._crowd_cube else None,
         )
-        in_picture = len(views(spec, 0.0))
+        in_picture = len(views(spec, 0.0, eyes=eyes))
         self._picture = Picture(gl, (spec.width, spec.height), views=in_picture)
 
     def render(
         self, azimuth_deg: float, *, time_s: float = 0.0, elevation_deg: float = 0.0
     ) -> Frame:
         """Render one frame from a camera azimuth at a scene time."""
-        visible = self._draw(azimuth_deg, time_s, elevation_deg)
-        return Frame(self._picture.finish(), visible)
+        queries = self._draw(azimuth_deg, time_s, elevation_deg)
+        pixels = self._picture.finish()
+        visible = [0, 0]
+        for eye, query in queries.items():
+            visible[eye] = int(query.samples) // SAMPLES
+        return Frame(pixels, (visible[0], visible[1]))
+
+    def show(self, azimuth_deg: float, *, time_s: float = 0.0) -> None:
+        """Draw and tone map one frame and read nothing back: what a game would do."""
+        self._draw(azimuth_deg, time_s, 0.0)
+        self._picture.show()
 
     def render_radiance(
         self, azimuth_deg: float, *, time_s: float = 0.0, elevation_deg: float = 0.0
@@ -73,18 +88,22 @@ class FrameRenderer:
         self._draw(azimuth_deg, time_s, elevation_deg)
         return self._picture.radiance()
 
-    def _draw(self, azimuth_deg: float, time_s: float, elevation_deg: float) -> tuple[int, int]:
-        """Draw every view and return each eye's visible pixels."""
+    def _draw(
+        self, azimuth_deg: float, time_s: float, elevation_deg: float
+    ) -> dict[int, moderngl.Query]:
+        """Draw every view and return what counts each eye's visible samples.
+
+        Reading a count waits for the GPU, so it comes last.
+        """
         self.scene.crowd.light = self.scene.light  # another scene may have borrowed the crowd
         if self._crowd_cube:
             self._crowd_cube.render(time_s)
         self._picture.begin()
-        visible = [0, 0]
-        for view in views(self.spec, azimuth_deg, elevation_deg):
+        queries: dict[int, moderngl.Query] = {}
+        for view in views(self.spec, azimuth_deg, elevation_deg, eyes=self._drawn_eyes):
             self._picture.use_rectangle(view.rectangle)
-            for eye, pixels in self._draw_view(view, time_s).items():
-                visible[eye] = pixels
-        return visible[0], visible[1]
+            queries |= self._draw_view(view, time_s)
+        return queries
 
     @property
     def eye_models(self) -> tuple[EyeModel, ...]:
@@ -103,25 +122,25 @@ class FrameRenderer:
         ]
         return self.scene.crowd_cube(self.gl, max(sizes)) if sizes else None
 
-    def _draw_view(self, view: View, time_s: float) -> dict[int, int]:
+    def _draw_view(self, view: View, time_s: float) -> dict[int, moderngl.Query]:
         camera = view.uniforms
         scene = self.scene
         scene.head.draw(**camera, light=scene.light)
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        visible = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
+        queries = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
         for eye in view.eyes:
             if (self.spec.left, self.spec.right)[eye].reflection in {"high", "ultra"}:
                 scene.head.draw_tears(eye, **camera, light=scene.light)
         scene.crowd.draw(**camera, time_s=time_s)
         scene.surroundings.draw_background(view_matrix=view.view_matrix, projection=view.projection)
         scene.head.draw_hair(**camera, light=scene.light)
-        return visible
+        return queries
 
-    def _draw_eye(self, eye: int, camera: CameraUniforms) -> int:
+    def _draw_eye(self, eye: int, camera: CameraUniforms) -> moderngl.Query:
         self._eyes.shade(eye, **camera)  # outside the query: it counts what is seen
         query = self.gl.query(samples=True)
         self.gl.wireframe = self.wireframe
         with query:
             self._eyes.draw(eye, **camera)
         self.gl.wireframe = False
-        return int(query.samples) // SAMPLES
+        return query

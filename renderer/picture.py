@@ -60,8 +60,8 @@ class Picture:
         values = np.frombuffer(self._mean.read(components=3, dtype="f4", alignment=1), np.float32)
         return values.reshape(self.size[1], self.size[0], 3)[::-1].copy()
 
-    def finish(self) -> Pixels:
-        """Tone map and return the frame, (height, width, 3) uint8 sRGB, first row on top."""
+    def show(self) -> None:
+        """Tone map what was drawn: the frame stays on the GPU."""
         self.target.scissor = (0, 0, *self.size)
         bloom = self._bloom.blurred(self._radiance)
         self._display.use()
@@ -72,5 +72,9 @@ class Picture:
             u_exposure=EXPOSURE,
         )
         self._screen.render(moderngl.TRIANGLES, vertices=3)
+
+    def finish(self) -> Pixels:
+        """Tone map and return the frame, (height, width, 3) uint8 sRGB, first row on top."""
+        self.show()
         pixels = np.frombuffer(self._display.read(components=3, alignment=1), np.uint8)
         return pixels.reshape(self.size[1], self.size[0], 3)

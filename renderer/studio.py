@@ -20,9 +20,11 @@ class Studio:
         self.gl_version = identity.version
         self._scene: Scene | None = None
 
-    def renderer(self, spec: ClipSpec, *, wireframe: bool = False) -> FrameRenderer:
+    def renderer(
+        self, spec: ClipSpec, *, wireframe: bool = False, eyes: tuple[int, ...] = (0, 1)
+    ) -> FrameRenderer:
         """Return a renderer of one clip's frames, in the last clip's scene where it fits."""
-        renderer = FrameRenderer(self.gl, spec, scene=self._scene, wireframe=wireframe)
+        renderer = FrameRenderer(self.gl, spec, scene=self._scene, wireframe=wireframe, eyes=eyes)
         self._scene = renderer.scene
         return renderer
 

@@ -35,6 +35,24 @@ def test_the_iris_has_its_size_in_pixels_when_seen_from_the_front(distance: str)
     assert iris_px(half, 0.0) == pytest.approx((IRIS_PX[distance] / 2,) * 2, rel=1e-5)
 
 
+def test_one_eye_alone_has_the_whole_picture_at_macroscopic() -> None:
+    (view,) = views(ClipSpec(left=LOW, right=LOW), 0.0, eyes=(1,))
+    assert view.rectangle == (0, 0, 1920, 1080)
+    assert view.eyes == (1,)
+    limbus = eye_centre_mm(1) + [0, 0, LIMBUS_Z_MM]
+    left, right = (project(view, limbus + [dx, 0, 0]) for dx in (-5.85, 5.85))
+    assert (left + right) / 2 == pytest.approx([960, 540], abs=0.01)
+    assert right[0] - left[0] == pytest.approx(IRIS_PX["macroscopic"], rel=1e-4)
+
+
+def test_one_eye_alone_leaves_the_other_views_as_they_are() -> None:
+    spec = ClipSpec(left=LOW, right=LOW, distance="near")
+    (both,), (one,) = views(spec, 20.0), views(spec, 20.0, eyes=(0,))
+    assert one.eyes == (0,)
+    np.testing.assert_array_equal(one.view_matrix, both.view_matrix)
+    assert one.rectangle == both.rectangle
+
+
 def test_the_cameras_stand_where_the_design_says() -> None:
     radii_m = [camera_radius_mm(distance) / 1000 for distance in DISTANCES]
     assert radii_m == pytest.approx([0.17, 0.38, 1.5, 5.0], rel=0.08)

@@ -54,6 +54,12 @@ def test_another_process_renders_the_same_clip_bit_for_bit(tmp_path: Path) -> No
     assert min(min(row) for row in here.visible_px) > 0
 
 
+def test_one_eye_alone_is_drawn_without_the_other(gl: moderngl.Context, scene: Scene) -> None:
+    frame = FrameRenderer(gl, SPEC, scene=scene, eyes=(1,)).render(0.0)
+    assert frame.visible_px[0] == 0
+    assert frame.visible_px[1] > 500
+
+
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_off_is_the_same_frame_as_a_level_that_table_5_1_calls_none(
     gl: moderngl.Context, scene: Scene, effect: str
