@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats
-from renderer.head.lashes import Strands, joined
 from renderer.head.lid_fit import Socket
+from renderer.head.strand_group import Strands, joined
 
 COUNT: Final = 540
 VELLUS: Final = 220  # fine pale hairs at the outline and beyond

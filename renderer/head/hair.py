@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.head.face_mesh import FaceMesh, vertex_normals
-from renderer.head.lashes import Strands, joined
+from renderer.head.strand_group import Strands, joined
 
 COLOUR: Final = (0.060, 0.033, 0.019)
 KNOT_MM: Final = (0.0, 18.0, -205.0)  # where the comb gathers the hair

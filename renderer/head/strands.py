@@ -14,7 +14,7 @@ import numpy.typing as npt
 from renderer.body.makehuman import Floats, Indices
 from renderer.camera import Matrix
 from renderer.head.buffers import sort_into_cells
-from renderer.head.lashes import Strands
+from renderer.head.strand_group import Strands
 from renderer.program import Program
 
 SILHOUETTE: Final = 0.3  # sine of how far beyond the horizon of its body hair may still be seen

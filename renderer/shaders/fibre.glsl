@@ -17,9 +17,10 @@ float along_lobe(float angle, float width) {
 }
 
 // Marschner et al. 2003 with the azimuthal fits of Karis 2016, "Physically based hair shading in
-// Unreal". A tip is thin and lets more light through than the shaft.
+// Unreal". A tip is thin and lets more light through than the shaft;
+// the root is the youngest and darkest.
 FibreLight fibre_light(vec3 t, vec3 v, vec3 colour, float along, float sun) {
-    colour = pow(colour, vec3(1.0 - 0.35 * along * along));
+    colour = pow(colour, vec3(1.06 - 0.46 * along * along));
     vec3 l = u_sun_direction;
     float sin_l = clamp(dot(t, l), -1.0, 1.0), sin_v = clamp(dot(t, v), -1.0, 1.0);
     float lean = 0.5 * (asin(sin_l) + asin(sin_v));

@@ -1,4 +1,4 @@
-// Provides: one hair, a lock whose hairs lie side by side, or the soft shadow at a hair's root.
+// Provides: one hair, a lock whose hairs lie side by side, or the soft mark at a hair's root.
 // Alpha is the share of the pixel that it covers: exact for a straight edge, so the same hair is
 // as dark at every distance.
 
@@ -34,7 +34,7 @@ vec2 lock(float at, float half_px, float along, float number) {
 
 void main() {
     float at = v_ribbon.x, half_px = v_ribbon.y;
-    float alpha = covered(at, half_px) * min(v_ribbon.z * 30.0, 1.0);  // it leaves the skin softly
+    float alpha = covered(at, half_px) * smoothstep(0.0, 0.04, v_ribbon.z);  // it leaves the skin softly
     float x = clamp(at / max(half_px, 0.5), -1.0, 1.0);
     float round_px = clamp(half_px - 0.5, 0.0, 1.0);
     // A cylinder: the glints run along its middle, thinner sides let light through.
@@ -48,7 +48,7 @@ void main() {
     if (v_shadow > 0.0) {
         float fade = v_ribbon.z * (1.0 - v_ribbon.z) * (1.0 - v_ribbon.z);
         alpha = 6.75 * v_shadow * middle * middle * fade;
-        radiance = vec3(0.0);
+        radiance = v_body;
     }
     out_radiance = vec4(radiance, alpha);
 }

@@ -9,7 +9,7 @@
 in vec3 in_position;
 in vec3 in_tangent;   // from root to tip
 in vec4 in_ribbon;    // side, half width at the root in mm, place along the hair, thinning number
-in vec4 in_colour;    // linear colour; what a shadow takes away, 0 for a hair
+in vec4 in_colour;    // linear colour; how far a mark hides the skin, 0 for a hair
 in float in_sun;      // share of the sun that reaches this place
 
 uniform mat4 u_view_matrix;
@@ -29,9 +29,10 @@ out float v_shadow;
 const float MARGIN_PX = 0.5;   // a pixel whose middle lies beside the hair is partly covered
 const float SHADOW_LIFT_MM = 0.5;
 
-// A hair narrows to a point; a lock of hairs thins out strand by strand.
+// A hair swells where it leaves the skin and narrows to a point; a lock thins out strand by strand.
 float taper(float along) {
-    return u_strands > 1 ? 1.0 - 0.35 * along * along : 1.0 - along * along;
+    float root = 0.6 + 0.4 * smoothstep(0.0, 0.08, along);
+    return u_strands > 1 ? 1.0 - 0.35 * along * along : root * (1.0 - along * along);
 }
 
 void main() {
@@ -54,7 +55,8 @@ void main() {
     v_ribbon = vec4(in_ribbon.x * (half_px + MARGIN_PX), half_px, in_ribbon.z, in_ribbon.w);
     bool is_drawn = in_ribbon.w <= kept;
     // Software GL computes both sides of an if, but skips a loop that no vertex of a block enters.
-    int lit = is_drawn && in_colour.a == 0.0 ? 1 : 0;
+    bool is_black = in_colour.a > 0.0 && in_colour.r == 0.0;   // a shadow
+    int lit = is_drawn && !is_black ? 1 : 0;
     FibreLight light = FibreLight(vec3(0.0), vec3(0.0));
     for (int i = 0; i < lit; ++i)
         light = fibre_light(in_tangent, v, in_colour.rgb, in_ribbon.z, in_sun);

@@ -7,7 +7,7 @@ import pytest
 
 from renderer.head.brows import BROW, COUNT, grow_brow, stubble
 from renderer.head.face_mesh import face_mesh
-from renderer.head.lashes import Strands
+from renderer.head.strand_group import Strands
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import pytest
 
 from renderer.head.face_mesh import face_mesh
 from renderer.head.hair import LAYERS, HairCap, grow_hair, hair_cap, inside_hairline
-from renderer.head.lashes import Strands
+from renderer.head.strand_group import Strands
 
 
 @pytest.fixture(scope="module")

@@ -12,9 +12,11 @@ from scipy.spatial import cKDTree
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.optics import surface_height
 from renderer.head.face_mesh import face_mesh
-from renderer.head.lashes import UPPER, Strands, grow_lashes, rim_frames
+from renderer.head.lashes import UPPER, grow_lashes
 from renderer.head.lid_fit import LidPatch, fit_lids
+from renderer.head.lid_ground import rim_frames, skin_facing
 from renderer.head.lid_pose import STRAIGHT, LidPose
+from renderer.head.strand_group import Strands
 
 Floats = npt.NDArray[np.float64]
 SHUT = LidPose(blink=1.0)
@@ -31,7 +33,7 @@ def lid() -> LidPatch:
 
 @pytest.fixture(scope="module")
 def hairs(lid: LidPatch) -> Strands:
-    return grow_lashes(lid, rng())[1]
+    return grow_lashes(lid, rng()).hairs
 
 
 def upper_and_lower(strands: Strands) -> tuple[Floats, Floats]:
@@ -121,7 +123,7 @@ def test_the_frame_on_the_rim_is_square_and_looks_off_the_globe(lid: LidPatch) -
 @pytest.mark.parametrize("angle_deg", [0.0, 25.0])
 def test_no_lash_enters_the_globe(lid: LidPatch, angle_deg: float) -> None:
     moved, _ = turned(lid, angle_deg)
-    points = grow_lashes(moved, rng())[1].points_mm.reshape(-1, 3)
+    points = grow_lashes(moved, rng()).hairs.points_mm.reshape(-1, 3)
     r = np.hypot(points[:, 0], points[:, 1])
     front = (r < 11) & (points[:, 2] > 0)
     assert (points[front, 2] - surface_height(r[front])[0]).min() > 0.3
@@ -133,7 +135,7 @@ def test_lashes_bend_away_from_skin_that_bulges_in_their_way(lid: LidPatch) -> N
     beyond = lid.across_mm - lid.across_mm[:, lid.rim_row][:, None]
     push = 7.0 * np.clip(beyond / 5.0, 0, 1) * (lid.is_upper < 0.5)[:, None]
     bulging = replace(lid, points_mm=lid.points_mm + push[..., None] * [0.0, 0.0, 1.0])
-    lower = upper_and_lower(grow_lashes(bulging, rng())[1])[1]
+    lower = upper_and_lower(grow_lashes(bulging, rng()).hairs)[1]
     skin = bulging.points_mm[:, lid.rim_row + 1 :].reshape(-1, 3)
     tips = lower[:, 4:].reshape(-1, 3)
     near = np.array([np.argmin(((skin - tip) ** 2).sum(axis=1)) for tip in tips[::7]])
@@ -144,7 +146,7 @@ def test_lashes_bend_away_from_skin_that_bulges_in_their_way(lid: LidPatch) -> N
 @pytest.mark.parametrize("pose", [STRAIGHT, LidPose(0.0, -30.0), LidPose(0.0, 25.0), SHUT])
 def test_no_lash_pierces_the_skin_however_the_lids_fold(pose: LidPose) -> None:
     lid = fit_lids(face_mesh().sockets[1], pose)
-    points = grow_lashes(lid, rng())[1].points_mm[:, 3:].reshape(-1, 3)
+    points = grow_lashes(lid, rng()).hairs.points_mm[:, 4:].reshape(-1, 3)  # past the root
     skin = lid.points_mm[:, lid.rim_row + 1 :]
     around = np.roll(skin, -1, axis=0) - np.roll(skin, 1, axis=0)
     facing = np.cross(np.gradient(skin, axis=1), around)  # from the temple over the upper lid
@@ -162,21 +164,55 @@ def test_tips_of_a_tuft_meet_but_roots_do_not(hairs: Strands) -> None:
     assert (steps[:, -1] > 2.0).mean() > 0.2
 
 
-def test_shadows_lie_at_the_roots_and_are_soft(lid: LidPatch) -> None:
-    shadows, hairs = grow_lashes(lid, rng())
-    assert shadows.shadow is not None
-    assert 0.05 < shadows.shadow.min() <= shadows.shadow.max() < 0.5
-    away = np.linalg.norm(shadows.points_mm[:, 0] - hairs.points_mm[:, 0], axis=1)
-    assert away.max() < 0.7
+def test_shades_and_pores_lie_at_the_roots_and_are_soft(lid: LidPatch) -> None:
+    shades, pores, hairs = grow_lashes(lid, rng())
+    assert shades.shadow is not None
+    assert pores.shadow is not None
+    for marks in (shades.shadow, pores.shadow):
+        assert 0.05 < marks.min() <= marks.max() < 0.6
+    roots = hairs.points_mm[:, 0]
+    away = np.linalg.norm(shades.points_mm[:, 0] - roots, axis=1)
+    assert away.max() < 0.4
+    nearest, _ = cKDTree(pores.points_mm.reshape(-1, 3)).query(roots)
+    assert nearest.max() < 0.25
     assert hairs.shadow is None
 
 
+def test_pores_are_red_and_shades_are_black(lid: LidPatch) -> None:
+    shades, pores, _ = grow_lashes(lid, rng())
+    assert shades.colour.max() == 0.0
+    assert (pores.colour[:, 0] > 1.4 * pores.colour[:, 1]).all()
+    assert pores.width_mm.max() < 0.6
+
+
+def test_marks_lie_on_the_skin(lid: LidPatch) -> None:
+    skin, facing = skin_facing(lid)
+    tree, edge = cKDTree(skin), cKDTree(lid.points_mm[:, lid.rim_row])
+    for marks in grow_lashes(lid, rng())[:2]:
+        points = marks.points_mm.reshape(-1, 3)
+        distance, near = tree.query(points)
+        beyond = distance < edge.query(points)[0]
+        height = np.abs(((points - skin[near]) * facing[near]).sum(axis=1))[beyond]
+        assert len(height) > 500
+        assert np.percentile(height, 95) < 0.1
+
+
+def test_lower_lashes_are_finer_and_shorter_and_curve_down(hairs: Strands) -> None:
+    upper, lower = upper_and_lower(hairs)
+    assert np.median(lengths(lower)) < 0.75 * np.median(lengths(upper))
+    width = hairs.width_mm
+    assert np.median(width[UPPER.count :]) < 0.65 * np.median(width[: UPPER.count])
+    straight = np.linalg.norm(lower[:, -1] - lower[:, 0], axis=1) / lengths(lower)
+    assert np.median(straight) < 0.96
+    assert (np.diff(lower, axis=1)[:, -1, 1] < 0.0).mean() > 0.9
+
+
 def test_the_same_seed_grows_the_same_hairs(lid: LidPatch, hairs: Strands) -> None:
-    np.testing.assert_array_equal(grow_lashes(lid, rng())[1].points_mm, hairs.points_mm)
+    np.testing.assert_array_equal(grow_lashes(lid, rng()).hairs.points_mm, hairs.points_mm)
 
 
 def test_both_eyes_obey_the_same_laws_but_are_no_mirror_images(hairs: Strands) -> None:
-    other = grow_lashes(face_mesh().lids[0], rng(4))[1]
+    other = grow_lashes(face_mesh().lids[0], rng(4)).hairs
     assert np.abs(other.points_mm - hairs.points_mm).max() > 1.0
     for ours, theirs in zip(upper_and_lower(hairs), upper_and_lower(other), strict=True):
         assert lengths(theirs).mean() == pytest.approx(lengths(ours).mean(), rel=0.08)
