@@ -12,7 +12,8 @@ from scipy.spatial import cKDTree
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.optics import surface_height
 from renderer.head.face_mesh import face_mesh
-from renderer.head.lashes import UPPER, grow_lashes
+from renderer.head.lash_rows import UPPER
+from renderer.head.lashes import grow_lashes
 from renderer.head.lid_fit import LidPatch, fit_lids
 from renderer.head.lid_ground import rim_frames, skin_facing
 from renderer.head.lid_pose import STRAIGHT, LidPose
@@ -174,7 +175,7 @@ def test_shades_and_pores_lie_at_the_roots_and_are_soft(lid: LidPatch) -> None:
     away = np.linalg.norm(shades.points_mm[:, 0] - roots, axis=1)
     assert away.max() < 0.4
     nearest, _ = cKDTree(pores.points_mm.reshape(-1, 3)).query(roots)
-    assert nearest.max() < 0.25
+    assert np.max(nearest) < 0.25
     assert hairs.shadow is None
 
 
