@@ -21,7 +21,7 @@ DIRECTIONS: Final = ("rightward", "leftward")
 PRESETS: Final = ("thesis", "calibrated")
 IRIS_COLOURS: Final = ("blue", "grey", "green", "hazel", "amber", "brown", "dark-brown")
 ENVIRONMENTS: Final = ("park", "image")
-CROWDS: Final = (0, 5)
+CROWDS: Final = (0, 5, 10, 30)
 CAUSTIC_PATTERNS: Final = ("computed", "painted")
 # Where files lie: the contents' hash beside each path decides what the frames are.
 PATHS: Final = ("environment_file", "iris_file")

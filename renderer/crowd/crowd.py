@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from renderer.clip import ClipSpec
 from renderer.crowd.figure import Body
-from renderer.crowd.stage import GROUND_MM, STAGE, build_figures, light_shares
+from renderer.crowd.figures import Troupe, build_figures
+from renderer.crowd.shares import light_shares
+from renderer.crowd.stage import GROUND_MM, members
 from renderer.light import Light
 from renderer.program import assemble, build_program, plain_uniform
 
@@ -24,7 +26,8 @@ class Crowd:
     def __init__(self, gl: moderngl.Context, spec: ClipSpec, light: Light) -> None:
         self.gl = gl
         self.light = light
-        self.figures = build_figures(STAGE if spec.crowd else ())
+        self.figures = build_figures(members(spec.crowd))
+        self._troupe = Troupe(self.figures)
         self._time_s: float | None = None
         self._bones: list[Floats] = []
         self._nowhere = gl.framebuffer([gl.renderbuffer((1, 1))])
@@ -34,7 +37,7 @@ class Crowd:
     def pose(self, time_s: float) -> None:
         """Skin everybody for a time; does nothing when they already stand so."""
         if time_s != self._time_s:
-            self._bones = [figure.bones(time_s) for figure in self.figures]
+            self._bones = list(self._troupe.bones(time_s))
             # Capturing vertices needs a complete target, though nothing is drawn into it.
             with self.gl.scope(self._nowhere, moderngl.NOTHING):
                 for number, transforms in enumerate(self._bones):

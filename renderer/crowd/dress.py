@@ -20,12 +20,17 @@ _HAIRLINE: Final = (
     (-60.0, 0.0, 12.0, 30.0, 60.0, 95.0, 120.0, 145.0),
     (668.0, 690.0, 742.0, 742.0, 768.0, 788.0, 796.0, 800.0),
 )
+PARTS: Final = ("skin", "hair", "top", "bottom", "shoes", "eyes", "brows")
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A part of a body: base vertices pushed outwards and coloured, thinned to ``target``."""
+    """A part of a body: base vertices pushed outwards and coloured, thinned to ``target``.
 
+    ``part`` is the one of PARTS whose colour it has.
+    """
+
+    part: str
     triangles: Indices
     push_mm: Floats
     surface: Floats
@@ -57,11 +62,11 @@ def pieces(person: Person) -> list[Piece]:
     loose = 9.0 + 5.0 * np.clip((300 - base[:, 1]) / 300, 0, 1)
     trousers = 5.0 + 7.0 * np.clip((-250 - base[:, 1]) / 300, 0, 1)
     found = [
-        Piece(body[is_head], still, skin, 1900, _face_detail(base)),
-        Piece(body[is_hand], still, skin, 560),
-        Piece(tights[is_top & is_covered], loose, _flat(person.top, n), 1000),
-        Piece(tights[~is_top & ~is_shoe], trousers, _flat(person.bottom, n), 560),
-        Piece(tights[is_shoe], np.full(n, 9.0), _flat(person.shoes, n), 160),
+        Piece("skin", body[is_head], still, skin, 1900, _face_detail(base)),
+        Piece("skin", body[is_hand], still, skin, 560),
+        Piece("top", tights[is_top & is_covered], loose, _flat(person.top, n), 1000),
+        Piece("bottom", tights[~is_top & ~is_shoe], trousers, _flat(person.bottom, n), 560),
+        Piece("shoes", tights[is_shoe], np.full(n, 9.0), _flat(person.shoes, n), 160),
         _scalp(person, base, body),
     ]
     if person.has_long_hair:
@@ -146,7 +151,9 @@ def _scalp(person: Person, base: Floats, body: Indices) -> Piece:
     streaks = 1 + 0.18 * np.sin(base @ [0.9, 0.2, 0.35])
     surface = _flat(person.hair, len(base))
     surface[:, :3] *= streaks[:, None]
-    return Piece(body[is_hair], push, surface, 420, shift_mm=_snap(base, body[is_hair], above))
+    return Piece(
+        "hair", body[is_hair], push, surface, 420, shift_mm=_snap(base, body[is_hair], above)
+    )
 
 
 def _snap(base: Floats, triangles: Indices, above: Floats) -> Floats:
@@ -166,4 +173,4 @@ def _long_hair(person: Person, base: Floats) -> Piece:
     kept = (centre[:, 1] > 520) & frames_face
     surface = _flat(person.hair, len(base))
     surface[:, :3] *= (1 + 0.2 * np.sin(base @ [0.5, 0.0, 0.5]))[:, None]
-    return Piece(triangles[kept], np.full(len(base), 2.0), surface, 300, is_two_sided=True)
+    return Piece("hair", triangles[kept], np.full(len(base), 2.0), surface, 300, is_two_sided=True)

@@ -59,6 +59,11 @@ def eyes(person: Person, shape: Floats) -> list[FacePart]:
     return parts
 
 
+def brow_colour(person: Person) -> tuple[float, ...]:
+    """Return the albedo of brows: hair with skin between."""
+    return tuple(0.75 * h + 0.25 * s for h, s in zip(person.hair, person.skin, strict=True))
+
+
 def brows(person: Person, shape: Floats) -> list[FacePart]:
     """Return two strips on the brow ridge, thick at the nose and tapering outwards."""
     along = np.linspace(0, 1, _BROW_STEPS)
@@ -67,8 +72,7 @@ def brows(person: Person, shape: Floats) -> list[FacePart]:
     row, column = np.divmod(np.arange(2 * (_BROW_STEPS - 1)), _BROW_STEPS - 1)
     a = row * _BROW_STEPS + column
     quads = np.stack([a, a + 1, a + 1 + _BROW_STEPS, a + _BROW_STEPS], axis=1)
-    surface = np.tile([*person.hair, 0.0], (3 * _BROW_STEPS, 1))
-    surface[:, :3] = 0.75 * surface[:, :3] + 0.25 * np.array(person.skin)
+    surface = np.tile([*brow_colour(person), 0.0], (3 * _BROW_STEPS, 1))
     lift = np.array([0.0, 0.25, 0.97])  # outwards on the brow ridge
     parts = []
     for side in (-1.0, 1.0):

@@ -15,7 +15,7 @@ import numpy as np
 from renderer.body.decimate import decimate
 from renderer.body.makehuman import Floats, Indices, base_mesh, phenotype, target_offsets
 from renderer.body.rig import Rig, fit_rig
-from renderer.crowd.dress import Piece, pieces
+from renderer.crowd.dress import PARTS, Piece, pieces
 from renderer.crowd.face_parts import FacePart, brows, eyes
 from renderer.crowd.people import Person
 
@@ -35,8 +35,8 @@ class Body:
     """A person's mesh in rest pose with the skeleton of BONES.
 
     ``positions_mm`` and ``normals`` (n, 3); ``surface`` (n, 4) linear albedo and gloss; ``bones``
-    and ``weights`` (n, 4); ``triangles`` (m, 3), ``outline`` fewer of them for the shadow; ``rig``
-    for posing, its bones those of BONES.
+    and ``weights`` (n, 4); ``triangles`` (m, 3), ``outline`` fewer of them for the shadow;
+    ``parts`` (n,) which of PARTS a vertex belongs to; ``rig`` for posing, its bones those of BONES.
     """
 
     positions_mm: Floats
@@ -46,6 +46,7 @@ class Body:
     weights: Floats
     triangles: Indices
     outline: Indices
+    parts: Indices
     rig: Rig
 
 
@@ -59,7 +60,8 @@ def build_body(person: Person) -> Body:
     rig = fit_rig(shape)
     keep = [rig.index(name) for name in BONES]
     weights = _fold_fingers(rig)
-    parts = [_thin(shape, piece) for piece in pieces(person)]
+    dressed = pieces(person)
+    parts = [_thin(shape, piece) for piece in dressed]
     rows = np.concatenate([part[0] for part in parts])
     starts = np.cumsum([0, *[len(part[0]) for part in parts]])
     bones, shares = _four_strongest(weights[rows])
@@ -78,12 +80,14 @@ def build_body(person: Person) -> Body:
             [part[4] + start for part, start in zip(parts, starts, strict=False)]
         ),
         outline=np.zeros((0, 3), dtype=np.int64),
+        parts=np.repeat([PARTS.index(p.part) for p in dressed], [len(p[0]) for p in parts]),
         rig=small,
         bones=bones,
         weights=shares,
     )
-    for part in (*eyes(person, shape), *brows(person, shape)):
-        body = _with_part(body, part)
+    for name, made in (("eyes", eyes(person, shape)), ("brows", brows(person, shape))):
+        for part in made:
+            body = _with_part(body, part, name)
     outline = decimate(body.positions_mm, body.triangles, target=OUTLINE_TRIANGLES)
     return replace(body, outline=outline)
 
@@ -153,7 +157,7 @@ def _four_strongest(weights: Floats) -> tuple[Indices, Floats]:
     return bones, strongest / strongest.sum(axis=1, keepdims=True)
 
 
-def _with_part(body: Body, part: FacePart) -> Body:
+def _with_part(body: Body, part: FacePart, name: str) -> Body:
     """Append a part that follows the head alone."""
     count = len(part.positions_mm)
     head = np.zeros((count, 4), dtype=np.int64)
@@ -166,4 +170,5 @@ def _with_part(body: Body, part: FacePart) -> Body:
         bones=np.concatenate([body.bones, head]),
         weights=np.concatenate([body.weights, np.tile([1.0, 0.0, 0.0, 0.0], (count, 1))]),
         triangles=np.concatenate([body.triangles, part.triangles + len(body.positions_mm)]),
+        parts=np.concatenate([body.parts, np.full(count, PARTS.index(name))]),
     )

@@ -7,8 +7,10 @@ from renderer.camera import camera_radius_mm, views
 from renderer.clip import DISTANCES, ClipSpec
 from renderer.crowd.crowd import Crowd
 from renderer.crowd.figure import BONES
+from renderer.crowd.figures import build_figures
 from renderer.crowd.people import PEOPLE
-from renderer.crowd.stage import GROUND_MM, STAGE, build_figures, light_shares
+from renderer.crowd.shares import light_shares
+from renderer.crowd.stage import GROUND_MM, STAGE
 from renderer.detail import Detail
 from renderer.light import Light, Sky
 

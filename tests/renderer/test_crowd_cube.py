@@ -48,8 +48,8 @@ def test_all_five_are_in_the_reflection(gl, crowd) -> None:
     seen = faces(cube)
     directions = np.stack([face_directions(256, face) for face in range(6)])
     for figure in crowd.figures:
-        pose = figure.pose(2.0)
-        towards = np.array([pose.x_mm, -450.0, pose.z_mm])
+        x_mm, z_mm = figure.member.place_mm(2.0)
+        towards = np.array([x_mm, -450.0, z_mm])
         near = directions @ (towards / np.linalg.norm(towards)) > np.cos(np.radians(3))
         assert bodies(seen)[near].mean() > 0.5, figure.member.person.name
 
