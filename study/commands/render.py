@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import multiprocessing
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
+import os
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,7 +24,8 @@ if TYPE_CHECKING:
 HELP = "render a study's clips and their manifest"
 DESCRIPTION = (
     "Render every clip of a study into a folder, with a manifest beside them. A clip that is there "
-    "and current is not rendered again; an interrupted run goes on where it stopped."
+    "and current is not rendered again; an interrupted run goes on where it stopped. A killed "
+    "process costs only its clip, which is tried again. See docs/rendering-at-scale.md."
 )
 
 
@@ -49,12 +52,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="picture size in pixels instead of the study's; may be given several times",
     )
     parser.add_argument("--fps", type=count, help="frames per second instead of the study's")
-    parser.add_argument(
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
         "--workers",
         type=count,
         default=1,
-        help="processes that render at the same time (default: %(default)s; software rendering "
-        "already uses every core)",
+        help="processes of this machine that render at the same time (default: %(default)s; "
+        "software rendering uses every core already)",
+    )
+    where.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="render on the Dask cluster whose scheduler listens there, such as tcp://host:8786",
     )
 
 
@@ -68,16 +77,49 @@ def run(options: argparse.Namespace) -> int:
     specs = wanted(definition, only=options.only, sizes=options.size, fps=options.fps)
     folder = options.out or settings_of(options).media_folder
     with ClipBar(len(specs)) as bar:
-        if options.workers == 1:
-            records = _render_here(specs, folder, bar.show)
-        else:
-            # Each process opens its own GL context; a forked one would share its parent's.
-            context = multiprocessing.get_context("spawn")
-            with ProcessPoolExecutor(options.workers, mp_context=context) as executor:
-                records = render_with(executor, specs, folder, bar.show)
+
+        def say(line: str) -> None:
+            bar.clear()
+            print(line, file=sys.stderr, flush=True)
+
+        with _executor(options, say) as executor:
+            if executor is None:
+                records = _render_here(specs, folder, bar.show)
+            else:
+                from renderer.farm import render_on
+
+                records = render_on(executor, specs, folder, progress=bar.show, say=say)
     megabytes = sum(record.file_bytes for record in records) / 1e6
     print(f"{len(records)} clips, {megabytes:.1f} MB, in {folder}")
+    drawn_by = sorted({f"{record.gl_renderer}, {record.gl_version}" for record in records})
+    if len(drawn_by) > 1:
+        print(
+            "Drawn by different GL renderers, which may differ in the last bit: "
+            + "; ".join(drawn_by)
+        )
     return 0
+
+
+@contextmanager
+def _executor(options: argparse.Namespace, say: Callable[[str], None]) -> Iterator[Executor | None]:
+    """Give what the options ask for: a cluster, processes of this machine, or this one alone."""
+    if options.scheduler:
+        from study.commands.cluster import cluster
+
+        with cluster(options.scheduler, say=say) as executor:
+            yield executor
+    elif options.workers > 1:
+        from study.commands.pool import Pool
+
+        with Pool(options.workers, threads=fair_share(options.workers)) as executor:
+            yield executor
+    else:
+        yield None
+
+
+def fair_share(workers: int) -> int:
+    """Return how many threads each of several processes may have of this machine's cores."""
+    return max(1, len(os.sched_getaffinity(0)) // workers)
 
 
 def wanted(
@@ -101,7 +143,7 @@ def wanted(
         specs = [spec.resized(*size) for size in sizes for spec in specs]
     if fps:
         specs = [replace(spec, fps=fps) for spec in specs]
-    return list(dict.fromkeys(specs))
+    return list({spec.clip_id: spec for spec in specs}.values())  # a name's frames are the same
 
 
 def _render_here(
@@ -115,30 +157,5 @@ def _render_here(
         return render_clips(
             specs, folder, source=studio, progress=lambda number, share: show(number + share)
         )
-    finally:
-        studio.close()
-
-
-def render_with(
-    executor: Executor, specs: Sequence[ClipSpec], folder: Path, show: Callable[[float], None]
-) -> list[ClipRecord]:
-    """Render clips in an executor's processes, one clip each at a time."""
-    from renderer.batch import remove_parts
-
-    remove_parts(folder)
-    futures = [executor.submit(_render_one, spec, folder) for spec in specs]
-    for done, future in enumerate(as_completed(futures), start=1):
-        future.result()
-        show(done)
-    return [future.result() for future in futures]
-
-
-def _render_one(spec: ClipSpec, folder: Path) -> ClipRecord:
-    from renderer.batch import render_clip
-    from renderer.studio import Studio
-
-    studio = Studio()
-    try:
-        return render_clip(spec, folder, source=studio)
     finally:
         studio.close()

@@ -54,7 +54,7 @@ def start_command(
     process lives in its own session, so that Ctrl-C reaches its keeper alone, and ends with its
     keeper even if that is killed.
     """
-    end_with_parent = _end_with_parent()
+    end_with_parent = ending_with_parent()
 
     def prepare() -> None:
         end_with_parent()
@@ -69,7 +69,7 @@ def start_command(
     )
 
 
-def _end_with_parent() -> Callable[[], object]:
+def ending_with_parent() -> Callable[[], object]:
     """Return what a child calls to be sent SIGTERM when its parent dies; Linux alone can."""
     with contextlib.suppress(OSError, AttributeError):
         prctl = ctypes.CDLL(None).prctl
