@@ -22,10 +22,11 @@ from typing import TYPE_CHECKING, Final, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import iris_px
+from renderer.camera import iris_px_of_frame
 from renderer.clip import ClipSpec
 from renderer.encode import decode, open_encoder
 from renderer.fidelity import Rectangle, eye_rectangles, psnr_db, ssim
+from renderer.lod_path import places_of_clip
 from renderer.manifest import ClipRecord, read_manifest, write_manifest
 from renderer.sources import code_version
 
@@ -132,9 +133,10 @@ def make_clip(
         height=spec.height,
         fps=spec.fps,
         iris_px=[
-            [round(px, 3) for px in iris_px(spec, spec.azimuth_deg(frame))]
+            [round(px, 3) for px in iris_px_of_frame(spec, frame)]
             for frame in range(spec.frame_count)
         ],
+        lod_places=[[round(place, 4) for place in row] for row in places_of_clip(spec)],
         visible_px=notes.visible_px,
         psnr_db=[round(row[0], 3) for row in fidelity],
         ssim=[round(row[1], 5) for row in fidelity],
@@ -189,7 +191,9 @@ def _encode(spec: ClipSpec, part: Path, source: FrameSource, progress: Progress)
             notes.digest.update(frame.pixels.tobytes())
             notes.visible_px.append(list(frame.visible_px))
             if number % step == 0:
-                left, right = eye_rectangles(spec, spec.azimuth_deg(number))
+                left, right = eye_rectangles(
+                    spec, spec.azimuth_deg(number), distance_px=spec.distance_px(number)
+                )
                 notes.crops[number] = (
                     _Crop(left, frame.pixels[left].copy()),
                     _Crop(right, frame.pixels[right].copy()),

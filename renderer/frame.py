@@ -10,10 +10,12 @@ from dataclasses import dataclass
 
 import moderngl
 
-from renderer.camera import CameraUniforms, View, camera_radius_mm, views
+from renderer.camera import IRIS_PX, CameraUniforms, View, radius_of_px, views
 from renderer.clip import ClipSpec
 from renderer.crowd.cube import CrowdCube
-from renderer.eye.eyes import EyeModel, Eyes
+from renderer.eye.eyes import Eyes
+from renderer.eye.model import EyeModel
+from renderer.lod_path import Places, details_of, places_of_clip, places_of_view, shares_of
 from renderer.picture import SAMPLES, Picture, Pixels, Radiance
 from renderer.scene import Scene, build_scene, scene_key
 
@@ -49,7 +51,9 @@ class FrameRenderer:
         if scene is None or scene.key != scene_key(spec):
             scene = build_scene(gl, spec, last=scene)
         self.scene = scene
-        scene.surroundings.prepare_background(camera_radius_mm(spec.distance))
+        self._is_approach = spec.motion == "approach"
+        for distance_px in IRIS_PX.values() if self._is_approach else (IRIS_PX[spec.distance],):
+            scene.surroundings.prepare_background(radius_of_px(distance_px))
         self._crowd_cube = self._make_crowd_cube()
         self._eyes = Eyes(
             gl,
@@ -63,10 +67,52 @@ class FrameRenderer:
         self._picture = Picture(gl, (spec.width, spec.height), views=in_picture)
 
     def render(
-        self, azimuth_deg: float, *, time_s: float = 0.0, elevation_deg: float = 0.0
+        self,
+        azimuth_deg: float,
+        *,
+        time_s: float = 0.0,
+        elevation_deg: float = 0.0,
+        distance_px: float | None = None,
     ) -> Frame:
-        """Render one frame from a camera azimuth at a scene time."""
-        queries = self._draw(azimuth_deg, time_s, elevation_deg)
+        """Render one frame from a camera azimuth at a scene time.
+
+        ``distance_px`` puts the camera where an iris is so wide on 1080 lines; without it an orbit
+        keeps its distance and an approach is at its end.
+        """
+        return self.render_views(
+            views(
+                self.spec,
+                azimuth_deg,
+                elevation_deg,
+                distance_px=distance_px,
+                eyes=self._drawn_eyes,
+            ),
+            time_s=time_s,
+            places=places_of_view(self.spec, azimuth_deg, distance_px=distance_px),
+        )
+
+    def render_number(self, frame: int) -> Frame:
+        """Render one frame of the clip by its number (0-based)."""
+        places = places_of_clip(self.spec)
+        return self.render_views(
+            views(
+                self.spec,
+                self.spec.azimuth_deg(frame),
+                distance_px=self.spec.distance_px(frame),
+                eyes=self._drawn_eyes,
+            ),
+            time_s=self.spec.time_s(frame),
+            places=places[frame] if places else None,
+        )
+
+    def render_views(
+        self, shown: tuple[View, ...], *, time_s: float = 0.0, places: Places | None = None
+    ) -> Frame:
+        """Render one frame as cameras see it; ``places`` between a policy's steps, if eyes switch.
+
+        The views' rectangles lie within the picture of the clip's size.
+        """
+        queries = self._draw(shown, time_s, places)
         pixels = self._picture.finish()
         visible = [0, 0]
         for eye, query in queries.items():
@@ -75,32 +121,49 @@ class FrameRenderer:
 
     def show(self, azimuth_deg: float, *, time_s: float = 0.0) -> None:
         """Draw and tone map one frame and read nothing back: what a game would do."""
-        self._draw(azimuth_deg, time_s, 0.0)
+        shown = views(self.spec, azimuth_deg, eyes=self._drawn_eyes)
+        self._draw(shown, time_s, places_of_view(self.spec, azimuth_deg))
         self._picture.show()
 
     def render_radiance(
-        self, azimuth_deg: float, *, time_s: float = 0.0, elevation_deg: float = 0.0
+        self,
+        azimuth_deg: float,
+        *,
+        time_s: float = 0.0,
+        elevation_deg: float = 0.0,
+        distance_px: float | None = None,
     ) -> Radiance:
         """Render one frame as linear scene-referred radiance, (height, width, 3) float32 Rec. 709.
 
         What the camera receives: no exposure, no tone curve, no bloom. First row on top.
         """
-        self._draw(azimuth_deg, time_s, elevation_deg)
+        shown = views(
+            self.spec, azimuth_deg, elevation_deg, distance_px=distance_px, eyes=self._drawn_eyes
+        )
+        places = places_of_view(self.spec, azimuth_deg, distance_px=distance_px)
+        self._draw(shown, time_s, places)
         return self._picture.radiance()
 
     def _draw(
-        self, azimuth_deg: float, time_s: float, elevation_deg: float
+        self, shown: tuple[View, ...], time_s: float, places: Places | None
     ) -> dict[int, moderngl.Query]:
         """Draw every view and return what counts each eye's visible samples.
 
         Reading a count waits for the GPU, so it comes last.
         """
         self.scene.crowd.light = self.scene.light  # another scene may have borrowed the crowd
-        if self._crowd_cube:
+        for eye, shares in enumerate(shares_of(self.spec, places)):
+            if eye in self._drawn_eyes:
+                self._eyes.use(eye, shares)
+        if self._crowd_cube and any(
+            detail.setting("reflection", "mode") == "dynamic"
+            for eye in self._drawn_eyes
+            for detail, _ in self._eyes.shares(eye)
+        ):
             self._crowd_cube.render(time_s)
         self._picture.begin()
         queries: dict[int, moderngl.Query] = {}
-        for view in views(self.spec, azimuth_deg, elevation_deg, eyes=self._drawn_eyes):
+        for view in shown:
             self._picture.use_rectangle(view.rectangle)
             queries |= self._draw_view(view, time_s)
         return queries
@@ -110,29 +173,36 @@ class FrameRenderer:
         """Both eyes as they are drawn, the viewer's left, then right: what a scene exports."""
         return self._eyes.models
 
-    def render_number(self, frame: int) -> Frame:
-        """Render one frame of the clip by its number (0-based)."""
-        return self.render(self.spec.azimuth_deg(frame), time_s=self.spec.time_s(frame))
-
     def _make_crowd_cube(self) -> CrowdCube | None:
         sizes = [
-            int(eye.setting("reflection", "cube_px"))
-            for eye in (self.spec.left, self.spec.right)
-            if eye.setting("reflection", "mode") == "dynamic"
+            int(detail.setting("reflection", "cube_px"))
+            for detail in details_of(self.spec)
+            if detail.setting("reflection", "mode") == "dynamic"
         ]
         return self.scene.crowd_cube(self.gl, max(sizes)) if sizes else None
 
     def _draw_view(self, view: View, time_s: float) -> dict[int, moderngl.Query]:
         camera = view.uniforms
         scene = self.scene
+        # Meshes that change with the distance would change the face amid an approach.
+        scene.head.is_close = True if self._is_approach else None
         scene.head.draw(**camera, light=scene.light)
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         queries = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
         for eye in view.eyes:
-            if (self.spec.left, self.spec.right)[eye].reflection in {"high", "ultra"}:
-                scene.head.draw_tears(eye, **camera, light=scene.light)
+            wet = sum(
+                share
+                for detail, share in self._eyes.shares(eye)
+                if detail.reflection in {"high", "ultra"}
+            )
+            if wet > 0.0:
+                scene.head.draw_tears(eye, **camera, light=scene.light, share=wet)
         scene.crowd.draw(**camera, time_s=time_s)
-        scene.surroundings.draw_background(view_matrix=view.view_matrix, projection=view.projection)
+        scene.surroundings.draw_background(
+            view_matrix=view.view_matrix,
+            projection=view.projection,
+            is_smooth=self._is_approach,
+        )
         scene.head.draw_hair(**camera, light=scene.light)
         return queries
 

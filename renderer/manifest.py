@@ -25,6 +25,9 @@ class ClipRecord:
 
     ``iris_px`` is the iris's diameter on the picture per frame (frames, eyes left and right);
     ``visible_px`` each eye's unoccluded pixels per frame, in the same shape.
+    ``lod_places`` is, where eyes switch their LoD, each eye's place between the steps of the spec's
+    ``lod_policy`` per frame: 1.25 is step 1 (from 0, the coarsest) with a quarter of step 2. It is
+    empty where both eyes keep the LoDs of the spec.
     ``raw_sha256`` is taken over the frames' RGB bytes in order, before encoding.
     """
 
@@ -47,6 +50,7 @@ class ClipRecord:
     gl_renderer: str
     gl_version: str
     code_version: str
+    lod_places: list[list[float]] = field(default_factory=list)
 
     @property
     def clip_spec(self) -> ClipSpec:

@@ -19,7 +19,7 @@ from scipy import ndimage
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.caustics import MAP_EDGE_MM
-from renderer.eye.eyes import eye_constants
+from renderer.eye.model import eye_constants
 from renderer.eye.subsurface import Path, midpoint_sum
 from renderer.eye.textures import float_texture
 from renderer.iris.maps import iris_maps, scattering

@@ -20,8 +20,8 @@ from renderer.eye.anatomy import (
     IRIS_Z_MM,
     PROFILE_END_MM,
 )
-from renderer.eye.eyes import APPARENT_GAIN
 from renderer.eye.flat_iris import flat_iris, plane_points
+from renderer.eye.model import APPARENT_GAIN
 from renderer.eye.optics import cornea_share, fresnel, surface_height, surface_normal
 from renderer.eye.sclera import sclera_maps
 from renderer.iris.source import iris_of

@@ -23,7 +23,7 @@ from renderer.exchange.materials import MATERIALS, material_of
 from renderer.exchange.meshes import Mesh, write_ply
 from renderer.exchange.readme import README
 from renderer.exchange.textures import write_maps
-from renderer.eye.eyes import EyeModel
+from renderer.eye.model import EyeModel
 from renderer.frame import FrameRenderer
 from renderer.iris.source import iris_of
 from renderer.manifest import write_atomically

@@ -21,15 +21,17 @@ OPENING_MARGIN_MM: Final = 1.5  # lids may be modelled a little wider than their
 HULL_SCALE: Final = 1.08  # a coarse globe of this size encloses every finer one
 
 
-class Silhouette:
-    """The fine mesh of one eye and the picture that it is filled from."""
+class Shaded:
+    """One eye's radiance in a picture of its own: a pixel per pixel of the view that asks for it.
 
-    def __init__(self, gl: moderngl.Context, mesh: Mesh, *, rims: LidRims) -> None:
-        self.camera: Any = None  # whose picture is in the target
-        self._program = build_program(gl, "eye.vert", fragment="eye_silhouette.frag")
-        self._mesh = vertex_array(gl, self._program, mesh)
+    ``has_depth`` is for meshes that are shaded as they stand and may hide parts of themselves.
+    """
+
+    def __init__(self, rims: LidRims, *, has_depth: bool) -> None:
+        self.camera: Any = None  # whose picture it is
+        self._has_depth = has_depth
         self._target: moderngl.Framebuffer | None = None
-        self._shaded: moderngl.Texture | None = None
+        self._texture: moderngl.Texture | None = None
         self._origin_px = (0, 0)
         self._opening = opening_points(rims)
 
@@ -40,19 +42,35 @@ class Silhouette:
 
         Drawing is confined to the lids' opening, which ``eye_to_clip`` (4, 4) projects.
         """
+        size = viewport[2:]
         self._origin_px = viewport[:2]
-        if self._target is None or self._target.size != viewport[2:]:
-            self._shaded = gl.texture(viewport[2:], 4, dtype="f2")
-            self._shaded.filter = (moderngl.NEAREST, moderngl.NEAREST)
-            self._target = gl.framebuffer([self._shaded])
+        if self._target is None or self._target.size != size:
+            self._texture = gl.texture(size, 4, dtype="f2")
+            self._texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+            depth = gl.depth_renderbuffer(size) if self._has_depth else None
+            self._target = gl.framebuffer([self._texture], depth)
         self._target.use()
-        self._target.scissor = (0, 0, *viewport[2:])
+        self._target.scissor = (0, 0, *size)
         self._target.clear()
-        self._target.scissor = opening_box(self._opening, eye_to_clip, viewport[2:])
+        self._target.scissor = opening_box(self._opening, eye_to_clip, size)
+        tested = moderngl.DEPTH_TEST if self._has_depth else moderngl.NOTHING
+        gl.enable_only(moderngl.CULL_FACE | tested)
 
-    def draw(self, values: dict[str, Any]) -> None:
+    def uniforms(self, name: str) -> dict[str, Any]:
+        """Return the picture as the sampler ``name`` and where it lies in the target."""
+        return {name: self._texture, "u_view_origin_px": self._origin_px}
+
+
+class Silhouette:
+    """The fine mesh of one eye, filled from its picture."""
+
+    def __init__(self, gl: moderngl.Context, mesh: Mesh) -> None:
+        self._program = build_program(gl, "eye.vert", fragment="eye_silhouette.frag")
+        self._mesh = vertex_array(gl, self._program, mesh)
+
+    def draw(self, values: dict[str, Any], shaded: Shaded) -> None:
         """Draw the fine mesh into the current target."""
-        self._program.set(**values, u_shaded=self._shaded, u_view_origin_px=self._origin_px)
+        self._program.set(**values, **shaded.uniforms("u_shaded"))
         self._mesh.render()
 
 

@@ -75,6 +75,8 @@ class Head:
             TearLine(gl, self._programs["tears"], self._face.lids[eye], eye=eye) for eye in (0, 1)
         ]
         self._lit_by: Light | None = None
+        # Whether cameras get the fine meshes; None decides by their distance.
+        self.is_close: bool | None = None
 
     def draw(
         self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
@@ -94,7 +96,7 @@ class Head:
         clip = projection @ view_matrix
         skin, fabric = self._programs["skin"], self._programs["fabric"]
         skin.set(**view, **self._skin_maps.uniforms(density))
-        close = distance < CLOSE_MM
+        close = self._is_close_to(distance)
         for mesh in [*(self._close if close else self._distant), self._mesh("cap")]:
             mesh.draw(skin, clip, camera_mm=camera)
         self._fornix.draw(clip, light.sky)
@@ -139,16 +141,21 @@ class Head:
         projection: Matrix,
         camera_mm: npt.ArrayLike,
         light: Light,
+        share: float = 1.0,
     ) -> None:
-        """Draw the tear line of the viewer's left (0) or right (1) eye over lids and globe."""
+        """Draw the tear line of the viewer's left (0) or right (1) eye over lids and globe.
+
+        ``share`` of 1 as it is; less lets through what lies behind.
+        """
         distance = float(np.linalg.norm(np.asarray(camera_mm) - eye_centre_mm(eye)))
-        if distance > CLOSE_MM:
+        if not self._is_close_to(distance):
             return
         self._tears[eye].draw(
             u_view_matrix=view_matrix,
             u_projection=projection,
             u_camera_mm=camera_mm,
             u_mm_per_px=distance / self._pixel_per_mm(projection),
+            u_share=share,
             **light.uniforms(),
         )
 
@@ -165,6 +172,9 @@ class Head:
         self.gl.disable(moderngl.CULL_FACE)
         for mesh in meshes:
             mesh.draw(program, np.asarray(matrix, dtype=float))
+
+    def _is_close_to(self, distance_mm: float) -> bool:
+        return distance_mm < CLOSE_MM if self.is_close is None else self.is_close
 
     def _mesh(self, name: str) -> CellMesh:
         return self._surfaces[name].mesh

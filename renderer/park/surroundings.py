@@ -15,6 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.camera import IRIS_PX, radius_of_px
 from renderer.clip import ClipSpec
 from renderer.light import Sky
 from renderer.park.cube_lookup import halve
@@ -82,12 +83,26 @@ class Surroundings:
         self._panorama(_defocus(distance_mm))
 
     def draw_background(
-        self, *, view_matrix: npt.NDArray[np.floating], projection: npt.NDArray[np.floating]
+        self,
+        *,
+        view_matrix: npt.NDArray[np.floating],
+        projection: npt.NDArray[np.floating],
+        is_smooth: bool = False,
     ) -> None:
-        """Fill what nothing else covered, at the far plane; draw it after all opaque things."""
-        panorama = self._panorama(_defocus(_distance_mm(view_matrix)))
+        """Fill what nothing else covered, at the far plane; draw it after all opaque things.
+
+        ``is_smooth`` lets the blur change evenly with the camera's distance instead of in steps.
+        """
+        distance_mm = _distance_mm(view_matrix)
+        near, far, share = _defocus(distance_mm), _defocus(distance_mm), 0.0
+        if is_smooth:
+            near, far, share = _between(distance_mm)
         self._background.set(
-            u_view_matrix=view_matrix, u_projection=projection, u_panorama=panorama
+            u_view_matrix=view_matrix,
+            u_projection=projection,
+            u_panorama=self._panorama(near),
+            u_farther_panorama=self._panorama(far),
+            u_farther_share=share,
         )
         self.gl.depth_func = "<="
         self._background_screen.render(moderngl.TRIANGLES, vertices=3)
@@ -141,6 +156,20 @@ class Surroundings:
             u_sun_radiance=np.minimum(sky.sun_irradiance / (np.pi * radius**2), 6.0e4),
         )
         self.gl.vertex_array(program.gl_program, []).render(moderngl.TRIANGLES, vertices=3)
+
+
+def _between(distance_mm: float) -> tuple[Defocus, Defocus, float]:
+    """Return the steps that a distance lies between and the farther one's share, in log distance.
+
+    A step rules alone where clips of its distance have their camera.
+    """
+    at = np.interp(
+        math.log(distance_mm),
+        np.log([radius_of_px(px) for px in IRIS_PX.values()]),
+        np.arange(len(DEFOCUS)),
+    )
+    near = min(int(at), len(DEFOCUS) - 2)
+    return DEFOCUS[near], DEFOCUS[near + 1], float(at - near)
 
 
 def level_count(size: int) -> int:

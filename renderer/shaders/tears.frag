@@ -11,6 +11,7 @@ in vec2 v_water;
 
 uniform vec3 u_camera_mm;
 uniform float u_mm_per_px;    // size of a pixel at the eye
+uniform float u_share;        // of an eye that has a tear line, where it blends into one without
 
 out vec4 out_radiance;
 
@@ -69,5 +70,5 @@ void main() {
     float amount = v_water.y * min(HEIGHT_MM / u_mm_per_px, 1.0);
     float visible = sun_visibility(v_world, 1.5);
     vec3 radiance = sky_mirrored(n, v, fresnel) + sun_mirrored(n, v, visible) + sun_gathered(n, visible);
-    out_radiance = amount * vec4(radiance, taken);
+    out_radiance = u_share * amount * vec4(radiance, taken);
 }

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from renderer.camera import Matrix, eye_centre_mm, look_at, perspective
-from renderer.eye.eyes import gaze_rotation
 from renderer.eye.geometry import eye_mesh
+from renderer.eye.model import gaze_rotation
 from renderer.head.face_mesh import SkinPart, face_mesh
 from renderer.head.lid_pose import LidPose
 from renderer.program import Program, build_program

@@ -10,7 +10,7 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.eye.eyes import gaze_rotation
+from renderer.eye.model import gaze_rotation
 from renderer.eye.optics import surface_height
 from renderer.head import lid_fit
 from renderer.head.caruncle import caruncle, outer_membrane

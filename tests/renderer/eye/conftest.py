@@ -14,8 +14,8 @@ import pytest
 from renderer.camera import eye_centre_mm, look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.eye import eyes as eye_module
 from renderer.eye import maps as eye_maps
+from renderer.eye import model as eye_module
 from renderer.eye import sunlight
 from renderer.eye.caustics import caustic_map
 from renderer.eye.eyes import Eyes

@@ -10,8 +10,8 @@ import pytest
 
 from renderer.detail import Detail
 from renderer.eye.anatomy import CORNEA_IOR
-from renderer.eye.eyes import APPARENT_GAIN, gaze_rotation
 from renderer.eye.lids import LidRims
+from renderer.eye.model import APPARENT_GAIN, gaze_rotation
 from renderer.eye.optics import fresnel
 from renderer.eye.silhouette import opening_box, opening_points
 
