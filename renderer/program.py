@@ -7,7 +7,7 @@ misspelt constant fails to compile and names itself, dead code still disappears.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
@@ -129,9 +129,11 @@ def build_program(
     fragment: str | None = None,
     geometry: str | None = None,
     constants: Constants | None = None,
+    rewrite_fragment: Callable[[str], str] | None = None,
 ) -> Program:
     """Compile and link shader files of ``renderer/shaders``.
 
+    ``rewrite_fragment`` changes the assembled fragment shader before it is compiled.
     Raises RuntimeError with our file names and lines when GLSL does not compile.
     """
     stages = {
@@ -142,6 +144,8 @@ def build_program(
     sources = {stage: assemble(name, constants) for stage, name in stages.items() if name}
     try:
         texts: dict[str, Any] = {stage: source.text for stage, source in sources.items()}
+        if rewrite_fragment:
+            texts["fragment_shader"] = rewrite_fragment(texts["fragment_shader"])
         program = gl.program(**texts)
     except moderngl.Error as error:
         raise RuntimeError(_explain(str(error), sources)) from error

@@ -7,6 +7,7 @@ the shader (``renderer.eye.subsurface``).
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
@@ -53,12 +54,32 @@ def layer_errors(
 
     ``points`` along each side of the patch.
     """
+    wanted = [("pieces", nodes) for nodes in NODES]
+    wanted += [("left sum", samples) for samples in LEFT_SAMPLES]
+    return integrator_errors(
+        gl,
+        wanted=wanted,
+        iris_seed=iris_seed,
+        iris_colour=iris_colour,
+        points=points,
+        steps=steps,
+    )
+
+
+def integrator_errors(
+    gl: moderngl.Context,
+    *,
+    wanted: Iterable[tuple[str, int]],
+    iris_seed: int,
+    iris_colour: str,
+    points: int,
+    steps: int = STEPS,
+) -> list[LayerError]:
+    """Return the errors of ``wanted`` integrators: ("pieces", nodes) or ("left sum", samples)."""
     # The shader reads half floats: so does the truth.
     maps = iris_maps(iris_seed, iris_colour, size_px=MAP_PX).thickness_mm.astype(np.float16)
     scene = _Scene(gl, iris_seed, iris_colour, np.asarray(maps, np.float64), points)
     truth = [scene.truth(*angles, steps=steps) for angles in DIRECTIONS_DEG]
-    wanted = [("pieces", nodes) for nodes in NODES]
-    wanted += [("left sum", samples) for samples in LEFT_SAMPLES]
     return [_error(kind, count, scene.drawn(kind, count), truth) for kind, count in wanted]
 
 
