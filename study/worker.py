@@ -59,9 +59,10 @@ def run_worker(
     while not stop.is_set():
         job = jobs.claim(db, worker=worker)
         if job is None:
+            if jobs.requeue_dead(db, is_dead):
+                continue
             if until_empty:
                 break
-            jobs.requeue_dead(db, is_dead)
             stop.wait(poll_s)
         elif _work(db, media_folder, job, _Task(worker, render, stop, say)):
             rendered += 1
@@ -150,13 +151,14 @@ def requeue_missing(db: Database, media_folder: Path) -> int:
     A clip made by another version of the renderer is made anew too, but only until somebody has
     begun: people of one study must not see different pictures.
     """
+    # The jobs first: what another worker brings in meanwhile is then in the manifest, not gone.
+    done = [job.clip_id for job in jobs.all_jobs(db) if job.state == jobs.DONE]
     manifest = read_manifest(media_folder)
     may_renew = not participants.anyone_has_begun(db)
     gone = [
-        job.clip_id
-        for job in jobs.all_jobs(db)
-        if job.state == jobs.DONE
-        and not _is_usable(manifest, media_folder, job.clip_id, may_renew=may_renew)
+        clip_id
+        for clip_id in done
+        if not _is_usable(manifest, media_folder, clip_id, may_renew=may_renew)
     ]
     return jobs.requeue(db, gone) if gone else 0
 

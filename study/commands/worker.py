@@ -29,6 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Render until stopped by Ctrl-C or SIGTERM."""
+    from renderer.batch import remove_parts
     from renderer.studio import Studio
     from study.data.database import open_database
     from study.worker import run_worker, stopping_on_signals
@@ -36,6 +37,7 @@ def run(options: argparse.Namespace) -> int:
     settings = settings_of(options)
     db = open_database(settings.database_url)
     studio = Studio()  # before any clip is claimed: a machine without GL says so at once
+    remove_parts(settings.media_folder)  # what a killed worker left
     try:
         with stopping_on_signals() as stop:
             rendered = run_worker(
