@@ -7,6 +7,8 @@ from typing import Any, Final
 
 import moderngl
 
+# What Mesa and others call a renderer that computes on the processor.
+SOFTWARE: Final = ("llvmpipe", "softpipe", "swr", "swiftshader", "software", "basic render")
 GL_VERSION: Final = 430  # core profile: what llvmpipe and every GPU of the last ten years offer
 
 
@@ -38,3 +40,9 @@ def create_context() -> moderngl.Context:
 def identify(gl: moderngl.Context) -> GlIdentity:
     """Return the names of the context's renderer and version."""
     return GlIdentity(gl.info["GL_RENDERER"], gl.info["GL_VERSION"])
+
+
+def is_software(gl_renderer: str) -> bool:
+    """Whether a renderer of this name computes on the processor."""
+    name = gl_renderer.lower()
+    return any(word in name for word in SOFTWARE)
