@@ -1,4 +1,4 @@
-"""Which parts of a view nothing covers yet: on software GL, hidden pixels cost as much as seen ones.
+"""Which parts of a view nothing covers yet: hidden pixels cost software GL as much as seen ones.
 
 llvmpipe runs a multisampled draw's fragment shader before it looks at the depth: a background that
 a face hides costs as much as one that is seen. Counting the samples that an empty shader would
