@@ -38,8 +38,9 @@ class Costs:
 def read_bench(path: str | Path) -> Costs:
     """Read the cost of each LoD from ``bench.json``: a list of rows, or an object with ``rows``.
 
-    Of several renderers, sizes and numbers of eyes it takes the largest picture with the most eyes
-    of the renderer named last. Raises TableError with every fault of the file.
+    Only rows of the part "lods" count, and rows without a part: a LoD among a crowd, say, is
+    another condition. Of several renderers, sizes and numbers of eyes it takes the largest picture
+    with the most eyes of the renderer named last. Raises TableError with every fault of the file.
     """
     place = Path(path)
     try:
@@ -60,8 +61,8 @@ def read_bench(path: str | Path) -> Costs:
 def _faults(row: object, place: str) -> list[str]:
     if not isinstance(row, Mapping):
         return [f'{place}: found "{row}"; accepted: an object']
-    if not row.get("lod"):
-        return []  # the cost of one effect: not part of a LoD's cost
+    if not _is_lods(row):
+        return []
     faults = [
         f'{place}.{name}: found "{row.get(name)}"; accepted: some text'
         for name in _TEXT
@@ -75,6 +76,11 @@ def _faults(row: object, place: str) -> list[str]:
     if row.get("size") is None:
         faults.append(f'{place}.size: found "None"; accepted: a size like 1920x1080')
     return faults
+
+
+def _is_lods(row: Mapping[str, Any]) -> bool:
+    """Say whether a row is a LoD's cost: neither an effect's nor that of a special scene."""
+    return bool(row.get("lod")) and row.get("part", "lods") == "lods"
 
 
 def _is_measure(value: object) -> bool:
@@ -92,7 +98,7 @@ def _pixels(size: str) -> int:
 
 
 def _chosen(rows: list[dict[str, Any]]) -> Costs:
-    lods = [{**row, "size": _size(row["size"])} for row in rows if row.get("lod")]
+    lods = [{**row, "size": _size(row["size"])} for row in rows if _is_lods(row)]
     if not lods:
         return Costs(pd.DataFrame(columns=list(COLUMNS)), "no LoD was measured")
     renderer = lods[-1]["renderer"]

@@ -1,100 +1,104 @@
-"""``ocularist bench``: what a frame costs, for each LoD at each distance."""
+"""``ocularist bench``: what frames, effects, samples, cube maps, a crowd and a start cost here."""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from study.commands.errors import CommandError
 from study.commands.options import size
 
 if TYPE_CHECKING:
-    from tqdm import tqdm
+    from renderer.benchmark.plan import Progress
+    from renderer.benchmark.result import Bench
 
-    from renderer.bench import Cost
-
-HELP = "measure what each LoD costs"
+HELP = "measure what each LoD and effect costs"
 DESCRIPTION = (
-    "Time whole frames with two eyes, for each LoD at each distance: the last row of the thesis's "
-    "Table 5.1, on this machine. Prints a table and writes it for ocularist analyse --bench."
+    "Time on this machine: frames of each LoD with two eyes and one, each effect at each level, "
+    "subsurface by samples, cube maps by size, crowds; count triangles, texture fetches and "
+    "arithmetic per pixel, set-up stages and memory. Prints tables, writes them for ocularist "
+    "analyse --bench, and draws a chart. About 15 minutes on 2 cores without a GPU, most of them "
+    "for pictures of 1920x1080; leave the machine alone meanwhile. What is measured and how: "
+    "docs/benchmark.md."
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
-    from renderer.clip import DISTANCES
-    from renderer.detail import STANDARD_LODS
+    from renderer.benchmark.result import PARTS
 
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="smaller pictures (640x360), fewer rounds and levels: about 3 minutes",
+    )
+    parser.add_argument(
+        "--only",
+        action="append",
+        choices=PARTS,
+        metavar="PART",
+        help=f"measure this part only ({', '.join(PARTS)}); may be given several times",
+    )
     parser.add_argument(
         "--size",
         type=size,
-        default=(1920, 1080),
         metavar="WIDTHxHEIGHT",
-        help="picture size (default: 1920x1080)",
-    )
-    parser.add_argument(
-        "--distance",
-        action="append",
-        choices=DISTANCES,
-        help="this distance only; may be given several times",
-    )
-    parser.add_argument(
-        "--lod",
-        action="append",
-        choices=STANDARD_LODS,
-        help="this LoD only; may be given several times",
+        help="picture size (default: 1920x1080, with --quick 640x360)",
     )
     parser.add_argument(
         "--out",
         type=Path,
         default=Path("out/bench.json"),
         metavar="FILE.json",
-        help="where to write the rows (default: %(default)s)",
+        help="where to write the rows; the chart lies beside it (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--from",
+        dest="measured",
+        type=Path,
+        metavar="FILE.json",
+        help="measure nothing: print and draw what this file holds",
+    )
+    parser.add_argument(
+        "--markdown", action="store_true", help="print the tables as Markdown instead"
     )
 
 
 def run(options: argparse.Namespace) -> int:
-    """Measure, print, write."""
-    from tqdm import tqdm
+    """Measure or read, write, draw, print."""
+    from renderer.benchmark.chart import write_chart
+    from renderer.benchmark.printing import as_markdown, as_text
+    from renderer.benchmark.result import write_bench
 
-    from renderer.bench import run_bench, write_bench
-    from renderer.clip import DISTANCES
-    from renderer.detail import STANDARD_LODS
-
-    distances = options.distance or DISTANCES
-    lods = options.lod or STANDARD_LODS
-    with tqdm(
-        total=len(distances) * len(lods), unit="LoD", leave=False, disable=not sys.stderr.isatty()
-    ) as bar:
-        costs = run_bench(
-            size=options.size,
-            distances=distances,
-            lods=lods,
-            progress=lambda what: _advance(bar, what),
-        )
-    write_bench(costs, options.out)
-    print("\n".join(table_of(costs)))
-    print(f"\nWritten to {options.out}")
+    if options.out.suffix != ".json":
+        raise CommandError(f"--out {options.out}: write a file's name that ends in .json")
+    bench = _bench(options)
+    if not options.measured:
+        write_bench(bench, options.out)
+    charts = write_chart(bench, (options.measured or options.out).with_suffix(""))
+    print((as_markdown if options.markdown else as_text)(bench))
+    written = [*([] if options.measured else [options.out]), *charts]
+    if written:
+        print("\nWritten: " + ", ".join(map(str, written)), file=sys.stderr)
     return 0
 
 
-def _advance(bar: tqdm[Any], what: str) -> None:
-    bar.set_description(what)
-    bar.update()
+def _bench(options: argparse.Namespace) -> Bench:
+    from renderer.benchmark.result import PARTS, read_bench
+
+    if options.measured:
+        return read_bench(options.measured)
+    from renderer.benchmark.plan import run_bench
+
+    return run_bench(
+        options.only or PARTS, is_quick=options.quick, size=options.size, progress=_tell
+    )
 
 
-def table_of(costs: Sequence[Cost]) -> list[str]:
-    """Write the costs as lines: one per distance, one column per LoD, median ms per frame."""
-    lods = list(dict.fromkeys(cost.lod for cost in costs))
-    cell = {(cost.distance, cost.lod): cost for cost in costs}
-    lines = [f"ms per frame (median, two eyes, {costs[0].size}) on {costs[0].renderer}"]
-    lines.append(f"{'':12}{'iris px':>8}" + "".join(f"{lod:>10}" for lod in lods))
-    for distance in dict.fromkeys(cost.distance for cost in costs):
-        row = [cell[distance, lod] for lod in lods]
-        lines.append(
-            f"{distance:12}{row[0].iris_px:8.0f}"
-            + "".join(f"{cost.ms_median:10.1f}" for cost in row)
-        )
-    return lines
+def _tell(progress: Progress) -> None:
+    from study.commands.progress import time_left
+
+    state = f"{progress.share:.0%}{time_left(progress.left_s)}"
+    print(f"bench: {progress.title} ({state})", file=sys.stderr, flush=True)

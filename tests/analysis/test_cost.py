@@ -46,10 +46,14 @@ def test_the_largest_picture_with_most_eyes_of_one_renderer_counts(tmp_path: Pat
         row(ms_median=3.0, eyes=1),
         row(ms_median=4.0),
         row(ms_median=5.0, lod=None, effect="caustics", level="high"),
+        row(ms_median=6.0, part="lods", distance="far"),
+        row(ms_median=7.0, part="crowd", crowd=30, distance="far"),
+        row(ms_median=None, part="crowd", crowd=10, renderer="another"),
     ]
     costs = read_bench(write(tmp_path, rows))
     assert costs.ms("near", "low") == 4.0
-    assert len(costs.table) == 1
+    assert costs.ms("far", "low") == 6.0
+    assert len(costs.table) == 2
 
 
 def test_every_fault_is_reported_with_its_place(tmp_path: Path) -> None:

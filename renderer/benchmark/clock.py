@@ -1,0 +1,93 @@
+"""How long a frame takes: wall time on software GL, the GPU's own clock on a GPU.
+
+Software GL draws on worker threads after a timer query has ended (1.5 ms were told for a draw of
+61 ms), so only the time until the picture is there counts. A GPU's pictures stay on the GPU, as a
+game's do: its clock counts drawing alone, neither Python nor reading back.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import moderngl
+
+from renderer.frame import FrameRenderer
+
+SOFTWARE: Final = ("llvmpipe", "softpipe", "swr", "swiftshader", "software", "basic render")
+WALL, QUERY = "wall time", "timer queries"
+WARM_UP: Final = 2  # software GL compiles a shader for the state of its first draws
+# Over the orbit, from the side to the front and back: costs follow what is seen.
+AZIMUTHS_DEG: Final = (-50.0, 35.0, -20.0, 5.0, 50.0, -35.0, 20.0, -5.0, 0.0)
+FPS: Final = 30
+
+Timer = Callable[[FrameRenderer, float, float], float]
+
+
+def clock_of(gl_renderer: str) -> str:
+    """Return which clock tells the truth on a GL renderer: WALL or QUERY."""
+    name = gl_renderer.lower()
+    return WALL if any(word in name for word in SOFTWARE) else QUERY
+
+
+def timer_of(gl: moderngl.Context, clock: str) -> Timer:
+    """Return a function of renderer, azimuth (degrees) and scene time (s): a frame's ms."""
+
+    def wall(frames: FrameRenderer, azimuth_deg: float, time_s: float) -> float:
+        gl.finish()
+        started = time.perf_counter()
+        frames.render(azimuth_deg, time_s=time_s)
+        return (time.perf_counter() - started) * 1e3
+
+    def query(frames: FrameRenderer, azimuth_deg: float, time_s: float) -> float:
+        gl.finish()
+        spent = gl.query(time=True)
+        with spent:
+            frames.show(azimuth_deg, time_s=time_s)
+        return int(spent.elapsed) / 1e6
+
+    return {WALL: wall, QUERY: query}[clock]
+
+
+def interleaved(
+    variants: Sequence[FrameRenderer], *, rounds: int, timer: Timer
+) -> list[list[float]]:
+    """Time variants in turn, A B A B: what slows the machine for a while slows them all.
+
+    Returns a list of ``rounds`` milliseconds per variant. Within a round all have the same camera;
+    time runs on from frame to frame, because people who stand still would cost nothing.
+    """
+    times: list[list[float]] = [[] for _ in variants]
+    step = 0
+    for number in range(-WARM_UP, rounds):
+        azimuth_deg = AZIMUTHS_DEG[number % len(AZIMUTHS_DEG)]
+        for place, frames in enumerate(variants):
+            ms = timer(frames, azimuth_deg, step / FPS)
+            step += 1
+            if number >= 0:
+                times[place].append(ms)
+    return times
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Median and median absolute deviation of ``n`` milliseconds."""
+
+    median: float
+    mad: float
+    n: int
+
+
+def spread_of(values: Sequence[float]) -> Spread:
+    """Return the median of some milliseconds and how far they lie from it."""
+    median = statistics.median(values)
+    deviation = statistics.median(abs(value - median) for value in values)
+    return Spread(round(median, 3), round(deviation, 3), len(values))
+
+
+def difference(with_it: Sequence[float], without: Sequence[float]) -> Spread:
+    """Return the spread of the rounds' differences: with minus without."""
+    return spread_of([a - b for a, b in zip(with_it, without, strict=True)])

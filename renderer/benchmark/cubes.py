@@ -1,0 +1,70 @@
+"""The reflection's cube map by size: static, drawn once, against dynamic, drawn every frame.
+
+Frames of one ultra eye that mirrors such a cube minus frames of the same eye that mirrors nothing.
+A dynamic one is a static one of its size with the moving people in front.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from renderer.benchmark.clock import difference
+from renderer.benchmark.result import Bench
+from renderer.benchmark.stand import Stand, Step
+from renderer.crowd.cube import CrowdCube
+from renderer.detail import Detail
+from renderer.frame import FrameRenderer
+
+PART: Final = "cubes"
+SIZES_PX: Final = (128, 256, 512, 1024, 2048)
+LEVEL: Final = {"static": "high", "dynamic": "ultra"}  # whose shader reads such a cube
+
+
+def cube_steps(rounds: int, *, is_quick: bool) -> list[Step]:
+    """Return a step per size, from the smallest; in a hurry every other size."""
+    return [
+        Step(
+            PART, f"{size} pixels a face", 2.8 * (rounds + 2) + 24, partial(_measure, size_px=size)
+        )
+        for size in SIZES_PX[:: 2 if is_quick else 1]
+    ]
+
+
+def _measure(stand: Stand, bench: Bench, *, size_px: int) -> None:
+    off = stand.spec(_ultra("off"))
+    specs = {kind: stand.spec(_ultra(level)) for kind, level in LEVEL.items()}
+    frames = [mirroring(stand, kind, size_px) for kind in LEVEL]
+    without, *times = stand.time([stand.frames(off), *frames])
+    bench.rows.extend(
+        stand.row(
+            PART,
+            specs[kind],
+            difference(ms, without),
+            effect="reflection",
+            level=LEVEL[kind],
+            base="ultra",
+            cube=kind,
+            cube_px=size_px,
+        )
+        for kind, ms in zip(LEVEL, times, strict=True)
+    )
+
+
+def mirroring(stand: Stand, kind: str, size_px: int) -> FrameRenderer:
+    """Return frames of an ultra eye that mirrors a cube of another size than its level's."""
+    detail = _ultra(LEVEL[kind])
+    own_px = int(detail.setting("reflection", "cube_px"))
+    scene = stand.frames(stand.spec(_ultra("off"))).scene
+    kept = scene.crowd_cubes.get(own_px)
+    scene.crowd_cubes[own_px] = CrowdCube(stand.studio.gl, size_px, scene.crowd)
+    frames = stand.frames(stand.spec(detail))
+    del scene.crowd_cubes[own_px]
+    if kept:
+        scene.crowd_cubes[own_px] = kept
+    frames.eye_models[0].values["u_static_cube"] = scene.surroundings.cube(size_px)
+    return frames
+
+
+def _ultra(reflection: str) -> Detail:
+    return Detail.uniform("ultra").with_levels(reflection=reflection)

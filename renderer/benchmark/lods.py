@@ -1,0 +1,43 @@
+"""Frames of each LoD at each distance, with two eyes and with one: Table 5.1's last row.
+
+One eye is the viewer's left, alone: at macroscopic one view of the whole picture, as the thesis
+showed it ("one eye at very close range"), with the same iris in pixels as the two half frames have;
+elsewhere the same view without the other eye.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from renderer.benchmark.clock import spread_of
+from renderer.benchmark.result import Bench
+from renderer.benchmark.stand import BOTH, ONE, Stand, Step
+from renderer.clip import DISTANCES
+from renderer.detail import STANDARD_LODS, Detail
+
+PART: Final = "lods"
+WEIGHT: Final = 2.2  # per round: four LoDs of which ultra is 1, low about 0.3
+
+
+def lod_steps(rounds: int, *, is_quick: bool) -> list[Step]:
+    """Return a step per distance and number of eyes; in a hurry only at macroscopic."""
+    return [
+        Step(
+            PART,
+            f"{distance}, {'two eyes' if eyes == BOTH else 'one eye'}",
+            WEIGHT * (rounds + 2) + 20,
+            partial(_measure, distance=distance, eyes=eyes),
+        )
+        for distance in DISTANCES[: 1 if is_quick else None]
+        for eyes in (BOTH, ONE)
+    ]
+
+
+def _measure(stand: Stand, bench: Bench, *, distance: str, eyes: tuple[int, ...]) -> None:
+    specs = [stand.spec(Detail.uniform(lod), distance, eyes=eyes) for lod in STANDARD_LODS]
+    times = stand.time([stand.frames(spec, eyes=eyes) for spec in specs])
+    bench.rows.extend(
+        stand.row(PART, spec, spread_of(ms), lod=lod, eyes=len(eyes))
+        for lod, spec, ms in zip(STANDARD_LODS, specs, times, strict=True)
+    )

@@ -1,0 +1,87 @@
+"""Which parts are measured, in which order, and how far a benchmark has come."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from renderer.benchmark.crowd import crowd_steps
+from renderer.benchmark.cubes import cube_steps
+from renderer.benchmark.effects import effect_steps
+from renderer.benchmark.lods import lod_steps
+from renderer.benchmark.result import PARTS, Bench
+from renderer.benchmark.samples import sample_steps
+from renderer.benchmark.stand import Stand, Step, total_weight
+from renderer.benchmark.startup import memory_steps, startup_steps
+from renderer.benchmark.work import work_steps
+
+ROUNDS: Final = 9
+QUICK_ROUNDS: Final = 3
+SIZE: Final = (1920, 1080)
+QUICK_SIZE: Final = (640, 360)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Before a step: its title, the share of the work that is done, and the seconds left.
+
+    ``left_s`` is None before there is anything to reckon from.
+    """
+
+    title: str
+    share: float
+    left_s: float | None
+
+
+def steps_of(parts: Sequence[str], *, is_quick: bool) -> list[Step]:
+    """Return the steps of some parts in the order of PARTS.
+
+    In a hurry there are fewer rounds, one cube size in two, the effects from ultra alone and the
+    memory of ultra alone.
+    """
+    rounds = QUICK_ROUNDS if is_quick else ROUNDS
+    each: dict[str, list[Step]] = {
+        "lods": lod_steps(rounds, is_quick=is_quick),
+        "effects": effect_steps(rounds, is_quick=is_quick),
+        "samples": sample_steps(rounds, is_quick=is_quick),
+        "cubes": cube_steps(rounds, is_quick=is_quick),
+        "crowd": crowd_steps(rounds),
+        "work": work_steps(is_quick=is_quick),
+        "startup": startup_steps(),
+        "memory": memory_steps(is_quick=is_quick),
+    }
+    return [step for part in PARTS if part in parts for step in each[part]]
+
+
+def run_bench(
+    parts: Sequence[str] = PARTS,
+    *,
+    is_quick: bool = False,
+    size: tuple[int, int] | None = None,
+    progress: Callable[[Progress], None] = lambda _progress: None,
+) -> Bench:
+    """Measure some parts on this machine; ``progress`` is told before each step."""
+    started = time.monotonic()
+    steps = steps_of(parts, is_quick=is_quick)
+    rounds = QUICK_ROUNDS if is_quick else ROUNDS
+    stand = Stand(size or (QUICK_SIZE if is_quick else SIZE), rounds=rounds)
+    try:
+        bench = Bench(about=stand.about(is_quick=is_quick, seconds=0.0))
+        for number, step in enumerate(steps):
+            share = total_weight(steps[:number]) / total_weight(steps)
+            spent = time.monotonic() - started
+            left_s = spent / share * (1 - share) if share else None
+            progress(Progress(f"{step.part}: {step.title}", share, left_s))
+            step.measure(stand, bench)
+        seconds = time.monotonic() - started
+        return Bench(
+            about=stand.about(is_quick=is_quick, seconds=seconds),
+            rows=bench.rows,
+            work=bench.work,
+            startup=bench.startup,
+            memory=bench.memory,
+        )
+    finally:
+        stand.close()

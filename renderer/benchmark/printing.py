@@ -1,0 +1,44 @@
+"""The benchmark's tables for a terminal and as Markdown. Pure."""
+
+from __future__ import annotations
+
+from renderer.benchmark.result import Bench
+from renderer.benchmark.tables import Table, tables_of
+
+
+def as_text(bench: Bench) -> str:
+    """Return all tables for a terminal."""
+    return "\n\n".join([_about(bench), *map(_text, tables_of(bench))])
+
+
+def as_markdown(bench: Bench) -> str:
+    """Return all tables as Markdown, under headings of the third level."""
+    return "\n\n".join([_about(bench), *map(_markdown, tables_of(bench))])
+
+
+def _about(bench: Bench) -> str:
+    about = bench.about
+    quick = ", in a hurry (--quick)" if about.is_quick else ""
+    return (
+        f"{about.renderer} ({about.gl_version}); {about.processor}, {about.cores} cores; "
+        f"{about.size} pixels; {about.clock}; load {about.load_before:g} before; "
+        f"{about.seconds / 60:.1f} min{quick}; code {about.code_version}"
+    )
+
+
+def _text(table: Table) -> str:
+    widths = [max(map(len, column)) for column in zip(table.head, *table.rows, strict=True)]
+    lines = [
+        "  ".join(
+            cell.ljust(width) if place == 0 else cell.rjust(width)
+            for place, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in (table.head, *table.rows)
+    ]
+    return "\n".join([table.title, table.note, "", *lines])
+
+
+def _markdown(table: Table) -> str:
+    rule = ["---", *["---:"] * (len(table.head) - 1)]
+    lines = ["| " + " | ".join(row) + " |" for row in (table.head, rule, *table.rows)]
+    return "\n".join([f"### {table.title}", table.note, "", *lines])
