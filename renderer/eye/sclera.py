@@ -47,14 +47,14 @@ __all__ = [
 BASE_PX: Final = 2048
 
 # Linear Rec. 709; reference/eye-rendering.md, 1.6. The white of an eye is a warm light grey.
-WHITE: Final = (0.735, 0.66, 0.605)
-YELLOW: Final = (0.70, 0.60, 0.46)  # towards the canthi and where fat lies under the conjunctiva
+WHITE: Final = (0.735, 0.672, 0.628)
+YELLOW: Final = (0.71, 0.60, 0.44)  # towards the canthi and where fat lies under the conjunctiva
 PINK: Final = (0.68, 0.44, 0.40)  # near the caruncle and in the folds
-BLUISH: Final = (0.60, 0.62, 0.62)  # thin sclera next to the limbus
+BLUISH: Final = (0.58, 0.605, 0.63)  # thin sclera: next to the limbus, and in patches
 # What a vessel of full density leaves of the light, per channel: blood near the surface, and seen
 # through the conjunctiva, where scattering in front of it turns red bluish-pink.
 BLOOD: Final = (0.62, 0.13, 0.11)
-DEEP_BLOOD: Final = (0.70, 0.42, 0.48)
+DEEP_BLOOD: Final = (0.72, 0.47, 0.56)
 MAX_TILT_DEG: Final = 5.0
 _HEIGHT_RANGE_MM: Final = 0.2
 
@@ -127,18 +127,25 @@ def _base_colour(x: Field, y: Field, arc: Field, *, seed: int) -> Field:
     broad = noise_grid(n, n, cells=(7.0, 7.0), seed=seed * 8 + 1)
     mottle = noise_grid(n, n, cells=(45.0, 45.0), seed=seed * 8 + 2)
     fine = noise_grid(n, n, cells=(160.0, 160.0), seed=seed * 8 + 3)
-    side = np.abs(x) + np.float32(0.8) * broad
-    yellow = np.float32(0.65) * smoothstep(7.0, 15.0, side)
+    side = np.abs(x) + np.float32(1.1) * broad
+    yellow = np.float32(0.72) * smoothstep(7.0, 15.0, side)
     # Fat under the conjunctiva, beside the limbus on both sides.
-    yellow += np.float32(0.18) * np.exp(-(((side - 8.3) / 1.1) ** 2) - (y / 1.6) ** 2)
+    yellow += np.float32(0.25) * np.exp(-(((side - 8.3) / 1.1) ** 2) - (y / 1.6) ** 2)
     pink = np.float32(0.75) * smoothstep(11.0, 17.5, x + np.float32(0.7) * broad)
     pink = np.maximum(pink, np.float32(0.55) * smoothstep(14.0, 20.0, arc))
+    # Towards the lids the conjunctiva thickens and more blood shows through.
+    pink = np.maximum(
+        pink, np.float32(0.42) * smoothstep(3.2, 7.5, np.abs(y) + np.float32(0.5) * broad)
+    )
     # Capillaries too fine to be drawn one by one flush the conjunctiva in soft-edged patches.
     patches = noise_grid(n, n, cells=(26.0, 26.0), seed=seed * 8 + 6)
     patches += np.float32(0.6) * noise_grid(n, n, cells=(75.0, 75.0), seed=seed * 8 + 7)
     flush = smoothstep(-0.3, 2.2, patches) * smoothstep(LIMBUS_ARC_MM, LIMBUS_ARC_MM + 2.0, arc)
-    pink = np.maximum(pink, np.float32(0.40) * flush)
-    bluish = np.float32(0.45) * smoothstep(LIMBUS_ARC_MM + 1.3, LIMBUS_ARC_MM - 0.2, arc)
+    pink = np.maximum(pink, np.float32(0.44) * flush)
+    bluish = np.float32(0.55) * smoothstep(LIMBUS_ARC_MM + 1.5, LIMBUS_ARC_MM - 0.2, arc)
+    bluish += np.float32(0.30) * smoothstep(
+        0.1, 1.6, noise_grid(n, n, cells=(13.0, 13.0), seed=seed * 8 + 8)
+    )
     shade = 1.0 + 0.018 * broad + 0.014 * mottle + 0.008 * fine
     planes = np.empty((3, n, n), np.float32)
     for c in range(3):

@@ -27,9 +27,9 @@ def vessel_density(seed: int, size_px: int) -> tuple[Field, Field]:
     behind, _ = draw_tubes(_deep_tubes(seed), size_px, half_size_mm=HALF_SIZE_MM)
     texel_mm = 2.0 * HALF_SIZE_MM / size_px
     # Conjunctiva is clear, yet its vessels lie a tenth of a millimetre under a wet surface.
-    halo = ndimage.gaussian_filter(front, 0.07 / texel_mm, truncate=3.0)
-    soft = ndimage.gaussian_filter(behind, 0.13 / texel_mm, truncate=3.0)
-    return np.asarray(0.85 * front + 0.35 * halo), np.asarray(soft)
+    halo = ndimage.gaussian_filter(front, 0.06 / texel_mm, truncate=3.0)
+    soft = ndimage.gaussian_filter(behind, 0.15 / texel_mm, truncate=3.0)
+    return np.asarray(front + 0.30 * halo), np.asarray(soft)
 
 
 def _front_tubes(seed: int) -> Tubes:
@@ -64,10 +64,10 @@ def _deep_tubes(seed: int) -> Tubes:
     rng = np.random.Generator(np.random.PCG64([seed, 0xDEE9]))
     trees = trunks(
         rng,
-        int(rng.integers(10, 16)),
+        int(rng.integers(26, 36)),
         start_mm=(14.0, 21.0),
-        half_width_mm=(0.06, 0.13),
-        density=(0.30, 0.60),
-        length_mm=(6.0, 13.0),
+        half_width_mm=(0.06, 0.15),
+        density=(0.40, 0.80),
+        length_mm=(7.0, 14.0),
     )
     return grow(trees, EPISCLERAL, seed * 4 + 4)

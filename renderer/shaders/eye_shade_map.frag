@@ -4,6 +4,7 @@
 #include "light.glsl"
 #include "surface.glsl"
 #include "lids.glsl"
+#include "lid_sky.glsl"
 
 uniform int u_map_px;
 
@@ -14,7 +15,13 @@ void main() {
     float r = min(length(xy), 0.995 * GLOBE_RADIUS_MM), height, slope;
     xy *= r / max(length(xy), 1e-5);
     front_profile(min(r, PROFILE_END_MM), height, slope);
-    if (r >= PROFILE_END_MM) height = sqrt(GLOBE_RADIUS_MM * GLOBE_RADIUS_MM - r * r);
+    bool is_globe = r >= PROFILE_END_MM;
+    if (is_globe) height = sqrt(GLOBE_RADIUS_MM * GLOBE_RADIUS_MM - r * r);
     vec3 p_eye = vec3(xy, height);
-    f_shade = vec4(lid_shade(p_eye), sun_reaching(p_eye, turned_to_eye(u_sun_direction)));
+    vec3 n_eye = is_globe ? p_eye : vec3(-slope * xy / max(r, 1e-5), 1.0);
+    f_shade = vec4(vec3(0.5), 0.0);
+    int seen = between_lids(p_eye) ? 1 : 0;
+    for (int i = 0; i < seen; ++i)
+        f_shade = vec4(sky_share(p_eye, normalize(n_eye)),
+                       sun_reaching(p_eye, turned_to_eye(u_sun_direction)));
 }

@@ -2,16 +2,9 @@
 // reflections. Eye space in millimetres. The rims are the lids' inner edges (renderer/eye/lids.py).
 // Needs surface.glsl.
 
-uniform sampler2D u_lid_rims;      // per x: y of upper, y of lower, z of upper, z of lower rim
-
-const float RIM_EDGE_MM = 18.0;    // half the width that the rims' table covers
 const float LID_FRONT_MM = 13.4;   // radius of the lids' middle surface, which rays pass or hit
 const vec3 LID_REFLECTANCE = vec3(0.38, 0.24, 0.18);  // skin
 const vec3 LASH_REFLECTANCE = vec3(0.02, 0.012, 0.008);
-
-vec4 rims_at(float x_mm) {
-    return textureLod(u_lid_rims, vec2(0.5 + 0.5 * x_mm / RIM_EDGE_MM, 0.5), 0.0);
-}
 
 // Whether a point of the globe, or its neighbourhood, can lie open to view. Lids may be modelled a
 // little wider than their rims say.
@@ -86,19 +79,6 @@ vec2 past_lids_and_lashes(vec3 p_eye, vec3 d_eye, float softness_mm) {
     float room = min(rims.x - at.y, at.y - rims.y);
     float past_lids = smoothstep(-softness_mm, softness_mm, room);
     return vec2(past_lids, 1.0 - lash_cover(at, d_eye, rims.x - at.y, reach));
-}
-
-// Share of the sky that a point of the globe sees past the lids, redder where skin fills the rest:
-// (1 + d / sqrt(d^2 + h^2)) / 2 for a wall of height h at distance d, for both lids; the upper
-// lashes are a higher wall with holes.
-vec3 lid_shade(vec3 p_eye) {
-    const float wall_mm = 1.6, lashes_mm = 6.0, lashes_cover = 0.3;
-    vec4 rims = rims_at(p_eye.x);
-    vec2 d = max(vec2(rims.x - p_eye.y, p_eye.y - rims.y), 0.0);
-    vec2 open_share = 0.5 + 0.5 * d * inversesqrt(d * d + wall_mm * wall_mm);
-    float past_lashes = 0.5 + 0.5 * d.x * inversesqrt(d.x * d.x + lashes_mm * lashes_mm);
-    open_share.x *= 1.0 - lashes_cover * (1.0 - past_lashes);
-    return pow(vec3(open_share.x * open_share.y), vec3(0.75, 0.95, 1.0));
 }
 
 // Share of the sun that reaches a point of the globe, past this eye's lids and the whole head.

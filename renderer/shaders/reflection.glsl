@@ -6,7 +6,7 @@
 uniform samplerCube u_static_cube;   // radiance of the surroundings without the sun
 uniform samplerCube u_crowd_cube;    // premultiplied radiance and coverage of the moving people
 
-const float CORNEA_ROUGHNESS = 0.055;        // tear film over the cornea
+const float CORNEA_ROUGHNESS = 0.085;        // tear film over the cornea
 const float CORNEA_EXPONENT = 400.0;         // Blinn-Phong, at medium
 const float SCLERA_EXPONENT = 220.0;         // of a plain sclera
 const float FILM_EXPONENT = 2400.0;          // of the film between the bumps of its relief

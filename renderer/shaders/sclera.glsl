@@ -5,7 +5,6 @@
 uniform sampler2D u_sclera_albedo;   // azimuthal equidistant about the gaze axis
 uniform sampler2D u_sclera_normal;
 uniform vec3 u_sclera_mean;
-uniform sampler2D u_scattered_sun;   // the shade map's sun as tissue spreads it
 
 const float SCLERA_EDGE = 1.91986218;           // 110 degrees: where the maps end
 const vec3 SHADE_SEEP = vec3(0.72, 0.98, 1.05);
@@ -40,6 +39,9 @@ Surface on_sclera(Surface s) {
         vec2 n = 2.0 * textureLod(u_sclera_normal, uv, sclera_lod(u_sclera_normal)).xy - 1.0;
         s.n_tissue = normalize(s.n_eye + white * turned_slope(n * mirror, c));
         vec4 tile = relief_tile((2.0 * uv - 1.0) * SCLERA_HALF_SIZE_MM);
+        // At a slant near folds hide the steep sides of those behind.
+        float shown = clamp(2.0 * dot(s.n_eye, s.v_eye), 0.0, 1.0);
+        tile.xyz *= vec3(shown, shown, shown * shown);
         s.n_film = normalize(mix(s.n_tissue, s.n_film, s.cornea)
                              + white * turned_slope(tile.xy * mirror, c));
         s.film_variance = mix(tile.z, s.film_variance, s.cornea);
@@ -52,7 +54,7 @@ vec3 sclera_radiance(Surface s) {
     float cosine = dot(n, turned_to_eye(u_sun_direction));
     vec3 wrapped = max((cosine + SCATTER_WRAP) / ((1.0 + SCATTER_WRAP) * (1.0 + SCATTER_WRAP)), 0.0);
     // Light seeps into the lids' shade, red furthest.
-    float reaching = textureLod(u_scattered_sun, 0.5 + 0.5 * s.p_eye.xy / GLOBE_RADIUS_MM, 0.0).r;
+    float reaching = scattered_sun_at(s.p_eye);
     vec3 sun = u_sun_irradiance * pow(vec3(reaching), SHADE_SEEP) * wrapped;
     vec3 ambient = ambient_irradiance(turned_to_world(n)) * s.sky;
     // The map shows the tissue face-on through the tear film: at a slant the film mirrors more, and

@@ -3,16 +3,15 @@
 
 const float PI = 3.14159265358979;
 
-uniform mat4 u_eye_to_world;
-uniform vec3 u_camera_mm;      // world space
-uniform float u_mm_per_px;     // size of a pixel at the eye
-uniform float u_mirror;        // +1 the viewer's left eye, -1 the right: flips maps in x
+#include "eye_place.glsl"
 
 struct Surface {
     vec3 p_eye;
     vec3 n_eye;      // unit, outwards
     vec3 v_eye;      // unit, towards the camera
     float cornea;    // 1 clear cornea .. 0 opaque sclera
+    float limbus_mm; // outwards from where clear tissue ends, which wanders
+    float upright;   // 0 at the limbus's sides .. 1 above and below
     vec3 albedo;     // of the sclera
     vec3 n_tissue;   // unit, of the sclera under the film
     vec3 n_film;     // unit, of the tear film with its fine relief
@@ -38,12 +37,6 @@ void front_profile(float r, out float height, out float slope) {
     float weight = 0.5 * (1.0 + (cornea - globe) / q);
     height = 0.5 * (cornea + globe + q);
     slope = -weight * r / (R - p * sag) - (1.0 - weight) * r / globe + 0.5 * k * k_slope / q;
-}
-
-// What sun (a) and sky (rgb) reach a point of the globe's front, from the clip's own map.
-uniform sampler2D u_shade_map;
-vec4 shade_at(vec3 p_eye) {
-    return textureLod(u_shade_map, 0.5 + 0.5 * p_eye.xy / GLOBE_RADIUS_MM, 0.0);
 }
 
 // How clear the tissue over a point is: the sclera overlaps the cornea by about a millimetre, and

@@ -7,7 +7,7 @@
 in vec3 v_world;
 in vec3 v_normal;
 in vec3 v_tangent;
-in vec2 v_water;
+in vec3 v_water;
 
 uniform vec3 u_camera_mm;
 uniform float u_mm_per_px;    // size of a pixel at the eye
@@ -26,7 +26,7 @@ const vec3 MUCOSA = vec3(0.70, 0.53, 0.48);
 // Slopes of the water, root mean square. Across, the hollow is smooth; along the lid lashes, oil
 // and mucus ripple it, which draws the sun's image out into a line: a sharp and a wide part.
 const float ACROSS = 0.05;
-const vec2 ALONG = vec2(0.05, 0.60);
+const vec2 ALONG = vec2(0.05, 0.40);
 const vec2 SHARE = vec2(0.5, 0.5);
 // The harmonics keep a ninth of a real sky's contrast: bright clouds and the sun's halo count more.
 const float SKY_CONTRAST = 3.0;
@@ -50,7 +50,7 @@ vec3 sun_mirrored(vec3 n, vec3 v, float visible) {
 vec3 sun_gathered(vec3 n, float visible) {
     float foot = (v_water.x - 0.80) / 0.13;
     float lit = max(dot(n, u_sun_direction), 0.0) * visible;
-    return u_sun_irradiance / PI * MUCOSA * (GATHERED * lit * exp(-foot * foot));
+    return u_sun_irradiance / PI * MUCOSA * (GATHERED * v_water.z * lit * exp(-foot * foot));
 }
 
 vec3 sky_mirrored(vec3 n, vec3 v, float fresnel) {

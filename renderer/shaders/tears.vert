@@ -3,7 +3,7 @@
 in vec3 in_position;
 in vec3 in_normal;
 in vec3 in_tangent;    // along the lid
-in vec2 in_water;     // 0 on the globe .. 1 on the lid; amount of water
+in vec3 in_water;      // 0 on the globe .. 1 on the lid; amount of water; gloss
 
 uniform mat4 u_view_matrix;
 uniform mat4 u_projection;
@@ -11,7 +11,7 @@ uniform mat4 u_projection;
 out vec3 v_world;
 out vec3 v_normal;
 out vec3 v_tangent;
-out vec2 v_water;
+out vec3 v_water;
 
 void main() {
     v_world = in_position;
