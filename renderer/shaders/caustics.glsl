@@ -3,9 +3,8 @@
 // the cornea lets in and gathers, from maps of this clip (renderer/eye/caustics.py, chamber.py); or, as
 // in the thesis, a painted pattern on top of the plain cosine (painted_caustic.py).
 
-uniform sampler2D u_caustic_map;   // light's direction x, y; gain of irradiance
-uniform sampler2D u_relief_shade;  // of the sun by the iris's relief, over SHADE_RANGE
-uniform sampler2D u_chamber_map;   // irradiance of the surroundings inside the chamber
+#include "eye_chamber.glsl"
+
 uniform sampler2D u_painted_caustic;  // the thesis's pattern, brightest towards +x
 
 struct IrisLight {
@@ -43,7 +42,7 @@ vec3 painted_pattern(vec2 x_mm, Surface s, vec3 toward_sun, float reaching) {
 // The sunlight's direction of travel at the iris: bent where view or light is refracted.
 vec3 light_direction(vec2 x_mm) {
     if (REFRACTION < HIGH && CAUSTICS < HIGH) return -turned_to_eye(u_sun_direction);
-    vec2 q = textureLod(u_caustic_map, plane_uv(x_mm), plane_lod(u_caustic_map)).xy;
+    vec2 q = caustic_at(x_mm).xy;
     return normalize(vec3(q, -sqrt(max(1.0 - dot(q, q), 0.01))));
 }
 
@@ -58,8 +57,8 @@ IrisLight light_on_iris(vec2 x_mm, Surface s) {
         // Radiance falls by n^2 on its way out of the chamber (Nicodemus): counted here, where the
         // way in is counted, so that both stand or fall together.
         float n2 = CORNEA_IOR * CORNEA_IOR;
-        gain = textureLod(u_caustic_map, plane_uv(x_mm), plane_lod(u_caustic_map)).b / n2;
-        light.ambient = textureLod(u_chamber_map, plane_uv(x_mm), 0.0).rgb / n2;
+        gain = caustic_at(x_mm).z / n2;
+        light.ambient = chamber_at(x_mm) / n2;
         reaching = shade_at(light_entry(x_mm, light.w_eye)).a;
     }
     if (CAUSTICS >= HIGH && CAUSTICS_PAINTED == 1)
@@ -75,8 +74,5 @@ vec3 limbal_radiance(Surface s) {
     return LIMBAL_TISSUE * (u_sun_irradiance * s.sun * cosine + ambient) / PI;
 }
 
-// What the relief makes of the sun's light, from the clip's own map (iris_shade_map.frag).
-float relief_shade(vec2 x_mm) {
-    if (TEXTURE < HIGH) return 1.0;
-    return SHADE_RANGE * textureLod(u_relief_shade, plane_uv(x_mm), plane_lod(u_relief_shade)).r;
-}
+// What the relief makes of the sun's light.
+float relief_shade(vec2 x_mm) { return TEXTURE < HIGH ? 1.0 : relief_shade_at(x_mm); }

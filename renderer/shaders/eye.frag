@@ -46,6 +46,7 @@ vec3 eye_radiance(Surface s) {
 }
 
 void main() {
+    place_eye();
     vec3 radiance = vec3(0.0);
     int seen = between_lids(v_p_eye) ? 1 : 0;
     for (int i = 0; i < seen; ++i) radiance = eye_radiance(surface_at(v_p_eye, v_n_eye));
