@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from renderer.batch import keep_record, remove_parts
-from renderer.clip import ClipSpec
+from renderer.clip import PATHS, ClipSpec
 from renderer.manifest import ClipRecord, read_manifest, write_atomically
 from renderer.orders import WANTED, VersionMismatchError, fill_order, hash_name
 from renderer.sources import code_version
@@ -98,8 +98,8 @@ class _Batch:
             lines = [f"{_name(spec)}: {_reason(error)}" for spec, error in self._failures]
             raise BatchError("\n".join(lines)) from self._failures[0][1]
 
-    def _order(self, spec: ClipSpec, *, files: Sequence[str] = ()) -> None:
-        contents = {name: _read(spec, name) for name in files}
+    def _order(self, spec: ClipSpec, *, with_files: bool = False) -> None:
+        contents = {name: _read(spec, name) for name in PATHS if with_files and getattr(spec, name)}
         future = self._executor.submit(
             fill_order, spec.to_dict(), code_version(), contents=contents
         )
@@ -109,7 +109,7 @@ class _Batch:
         try:
             reply = future.result()
             if WANTED in reply:
-                self._order(spec, files=reply[WANTED])
+                self._order(spec, with_files=True)
                 return
             self._records[spec.clip_id] = _keep(spec, reply, self._folder)
             self._progress(len(self._records))

@@ -1,0 +1,128 @@
+"""Processes of this machine: a death breaks one future, stopping leaves nothing behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import BrokenExecutor, CancelledError
+from pathlib import Path
+
+import pytest
+
+from study.commands.pool import Pool
+
+ROOT = Path(__file__).parent.parent
+LIMIT_S = 120.0  # for a busy machine; a process starts within a second
+
+
+def is_alive(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+def test_a_killed_process_breaks_its_own_call_alone(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with Pool(2, threads=1) as pool:
+        long = pool.submit(Path.read_text, pipe)  # until somebody writes
+        killed = pool.submit(signal.raise_signal, signal.SIGKILL)
+        with pytest.raises(BrokenExecutor):
+            killed.result(LIMIT_S)
+        assert pool.submit(os.getpid).result(LIMIT_S) != os.getpid()  # a fresh process
+        pipe.write_text("whole")
+        assert long.result(LIMIT_S) == "whole"
+
+
+def test_a_process_that_is_killed_between_calls_is_replaced() -> None:
+    with Pool(1, threads=1) as pool:
+        first = pool.submit(os.getpid).result(LIMIT_S)
+        assert pool.submit(os.getpid).result(LIMIT_S) == first
+        os.kill(first, signal.SIGKILL)
+        while is_alive(first):
+            time.sleep(0.01)
+        for _ in range(2):  # its pool may notice in the first call or before it
+            try:
+                assert pool.submit(os.getpid).result(LIMIT_S) != first
+                return
+            except BrokenExecutor:
+                continue
+    raise AssertionError("the pool stays broken")
+
+
+def test_every_process_has_its_share_of_threads_and_a_folder_that_goes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delenv("LP_NUM_THREADS", raising=False)
+    with Pool(1, threads=3) as pool:
+        assert pool.submit(os.getenv, "LP_NUM_THREADS").result(LIMIT_S) == "3"
+        folder = Path(pool.submit(tempfile.mkdtemp).result(LIMIT_S))
+        assert folder.is_dir()
+    assert not folder.parent.exists()
+    assert folder.parent != Path(tempfile.gettempdir())
+
+
+def test_who_sets_the_threads_is_left_to_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LP_NUM_THREADS", "7")
+    with Pool(1, threads=3) as pool:
+        assert pool.submit(os.getenv, "LP_NUM_THREADS").result(LIMIT_S) == "7"
+
+
+def test_an_error_ends_the_processes_at_once() -> None:
+    pool = Pool(2, threads=1)
+    pid = pool.submit(os.getpid).result(LIMIT_S)
+    calls = [pool.submit(time.sleep, 1000.0) for _ in range(4)]
+    with pytest.raises(KeyboardInterrupt), pool:
+        raise KeyboardInterrupt
+    assert not is_alive(pid)
+    assert all(call.done() for call in calls)
+    for call in calls:
+        with pytest.raises(CancelledError):
+            call.result()
+
+
+KEEPER = """
+import multiprocessing, time
+from study.commands.pool import Pool
+
+if __name__ == "__main__":
+    with Pool(2, threads=1) as pool:
+        for call in [pool.submit(time.sleep, 0.0) for _ in range(2)]:
+            call.result()
+        print(*(child.pid for child in multiprocessing.active_children()), flush=True)
+        for call in [pool.submit(time.sleep, 1000.0) for _ in range(2)]:
+            call.result()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_no_process_outlives_its_keeper(tmp_path: Path, number: signal.Signals) -> None:
+    script = tmp_path / "keeper.py"
+    script.write_text(KEEPER)
+    keeper = subprocess.Popen(
+        [sys.executable, str(script)],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    assert keeper.stdout is not None
+    pids = [int(word) for word in keeper.stdout.readline().split()]
+    assert len(pids) == 2
+    if number == signal.SIGINT:  # Ctrl-C reaches everybody in the terminal
+        os.killpg(keeper.pid, number)
+    else:
+        os.kill(keeper.pid, number)
+    # communicate() comes back when nobody holds the keeper's output open any more.
+    said = keeper.communicate(timeout=LIMIT_S)[1]
+    assert [pid for pid in pids if is_alive(pid)] == []
+    if number == signal.SIGINT:
+        assert said.count("Traceback") == 1  # the keeper's own: no process has one
+        assert said.rstrip().endswith("KeyboardInterrupt")
