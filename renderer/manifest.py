@@ -16,7 +16,8 @@ from renderer.clip import ClipSpec
 from renderer.sources import code_version
 
 MANIFEST_NAME: Final = "manifest.json"
-SCHEMA: Final = 1
+SCHEMA: Final = 2
+READABLE: Final = (1, 2)  # 1 lacks what has a default below
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +30,13 @@ class ClipRecord:
     ``lod_policy`` per frame: 1.25 is step 1 (from 0, the coarsest) with a quarter of step 2. It is
     empty where both eyes keep the LoDs of the spec.
     ``raw_sha256`` is taken over the frames' RGB bytes in order, before encoding.
+
+    How well it is encoded, inside the eyes, left and right: ``psnr_db``, ``ssim`` and mean FLIP (0
+    to 1) of raw against decoded, in the whole rectangle (``flip_rectangle``) and at the pixels in
+    which the clip's LoDs differ (``flip_encoding``); there too the FLIP of one LoD against the
+    other (``flip_lods``). ``flip_note`` says why any is null. ``crf`` is x264's constant rate
+    factor, ``max_bytes`` the bound on the file; ``missed`` has a sentence per bound that does not
+    hold. ``master`` has ``file``, ``sha256`` and ``bytes`` of the frames without loss, or is null.
     """
 
     clip_id: str
@@ -51,11 +59,26 @@ class ClipRecord:
     gl_version: str
     code_version: str
     lod_places: list[list[float]] = field(default_factory=list)
+    flip_rectangle: list[float] | None = None
+    flip_encoding: list[float] | None = None
+    flip_lods: list[float] | None = None
+    flip_note: str = ""
+    crf: float | None = None
+    max_bytes: int | None = None
+    missed: list[str] = field(default_factory=list)
+    master: dict[str, Any] | None = None
 
     @property
     def clip_spec(self) -> ClipSpec:
         """The clip's spec as a ClipSpec."""
         return ClipSpec.from_dict(self.spec)
+
+    def has_master(self, folder: Path) -> bool:
+        """Say whether the clip's frames lie in the folder without loss, whole."""
+        if self.master is None:
+            return False
+        path = folder / str(self.master["file"])
+        return path.is_file() and path.stat().st_size == int(self.master["bytes"])
 
 
 @dataclass(kw_only=True)
@@ -88,7 +111,7 @@ def read_manifest(folder: Path) -> Manifest:
         return Manifest()
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        if data["schema"] != SCHEMA:
+        if data["schema"] not in READABLE:
             raise ValueError(f"schema {data['schema']}")
         records = [ClipRecord(**row) for row in data["clips"]]
     except (ValueError, KeyError, TypeError) as error:

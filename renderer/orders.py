@@ -95,7 +95,7 @@ def _holds(path: Path, sha256: str) -> bool:
 
 
 def _make(spec: ClipSpec) -> dict[str, Any]:
-    from renderer.batch import make_clip
+    from renderer.making import make_clip
 
     with tempfile.TemporaryDirectory(prefix="ocularist-") as folder:
         path = Path(folder) / "clip.mp4"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from renderer.clip import ClipSpec
 from renderer.context import create_context, identify
@@ -28,10 +28,10 @@ class Studio:
         self._scene = renderer.scene
         return renderer
 
-    def frames(self, spec: ClipSpec) -> Iterator[Frame]:
-        """Yield the clip's frames in order."""
+    def frames(self, spec: ClipSpec, numbers: Sequence[int] | None = None) -> Iterator[Frame]:
+        """Yield the clip's frames, or those with these numbers, in order."""
         renderer = self.renderer(spec)
-        for number in range(spec.frame_count):
+        for number in range(spec.frame_count) if numbers is None else numbers:
             yield renderer.render_number(number)
 
     def close(self) -> None:

@@ -8,15 +8,15 @@ from __future__ import annotations
 import os
 import signal
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from renderer.batch import make_clip
 from renderer.clip import ClipSpec
+from renderer.making import make_clip
 
 ONCE, ALWAYS, FAULTY, DAMAGED = 90, 91, 92, 93  # killed once, killed always, an error, cut once
 
@@ -33,9 +33,9 @@ class Gradients:
     gl_renderer = "pattern"
     gl_version = "1"
 
-    def frames(self, spec: ClipSpec) -> Iterator[Picture]:
+    def frames(self, spec: ClipSpec, numbers: Sequence[int] | None = None) -> Iterator[Picture]:
         y, x = np.mgrid[: spec.height, : spec.width]
-        for number in range(spec.frame_count):
+        for number in range(spec.frame_count) if numbers is None else numbers:
             if spec.iris_seed in (ONCE, ALWAYS) and number == 1 and is_its_turn(spec):
                 os.kill(os.getpid(), signal.SIGKILL)
             level = np.stack([x + number, y + spec.iris_seed, x + y], axis=-1) % 200

@@ -17,12 +17,12 @@ COLOURS = [(200, 120, 60), (128, 128, 128), (40, 60, 90), (235, 225, 215)]
 @pytest.fixture(scope="module")
 def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("encode") / "patches.mp4"
-    with open_encoder(path, fps=30) as encoder:
+    with open_encoder(path, fps=30, size=(96, 54)) as encoder:
         for number in range(7):
             frame = np.zeros((54, 96, 3), np.uint8)
             for column, colour in enumerate(np.roll(COLOURS, number, axis=0)):
                 frame[:, column * 24 : (column + 1) * 24] = colour
-            encoder.append_data(frame)
+            encoder.write(frame)
     return path
 
 
@@ -48,12 +48,12 @@ def test_the_stream_is_tagged_silent_and_without_metadata(clip: Path) -> None:
 
 def test_the_same_frames_give_the_same_file(clip: Path, tmp_path: Path) -> None:
     again = tmp_path / "again.mp4"
-    with open_encoder(again, fps=30) as encoder:
+    with open_encoder(again, fps=30, size=(96, 54)) as encoder:
         for number in range(7):
             frame = np.zeros((54, 96, 3), np.uint8)
             for column, colour in enumerate(np.roll(COLOURS, number, axis=0)):
                 frame[:, column * 24 : (column + 1) * 24] = colour
-            encoder.append_data(frame)
+            encoder.write(frame)
     assert again.read_bytes() == clip.read_bytes()
 
 
