@@ -88,6 +88,8 @@ def _work(db: Database, media_folder: Path, job: Job, task: _Task) -> bool:
         if record is None:
             with _Beat(db, job, task) as beat:
                 record = task.render(job.spec, media_folder, beat.hear)
+            if record.missed:
+                task.say(f"{_name(job)}: {'; '.join(record.missed)}. It is kept.")
     except _StoppedError:
         jobs.release(db, job, worker=task.worker)
         return False

@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from study.commands.encoding import add_encoding, encoding_choices, warn_of_missed
 from study.commands.errors import CommandError
 from study.commands.options import add_study, count, settings_of, size
 from study.commands.pictures import check_pictures
@@ -52,6 +53,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="picture size in pixels instead of the study's; may be given several times",
     )
     parser.add_argument("--fps", type=count, help="frames per second instead of the study's")
+    add_encoding(parser)
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
         "--workers",
@@ -72,6 +74,7 @@ def run(options: argparse.Namespace) -> int:
     from study.commands.progress import ClipBar
     from study.design.definition import read_definition
 
+    choices = encoding_choices(options)
     definition = read_definition(options.study)
     check_pictures(definition)
     specs = wanted(definition, only=options.only, sizes=options.size, fps=options.fps)
@@ -84,11 +87,12 @@ def run(options: argparse.Namespace) -> int:
 
         with _executor(options, say) as executor:
             if executor is None:
-                records = _render_here(specs, folder, bar.show)
+                records = _render_here(specs, folder, bar.show, choices)
             else:
                 from renderer.farm import render_on
 
                 records = render_on(executor, specs, folder, progress=bar.show, say=say)
+    warn_of_missed(records)
     megabytes = sum(record.file_bytes for record in records) / 1e6
     print(f"{len(records)} clips, {megabytes:.1f} MB, in {folder}")
     drawn_by = sorted({f"{record.gl_renderer}, {record.gl_version}" for record in records})
@@ -147,7 +151,10 @@ def wanted(
 
 
 def _render_here(
-    specs: Sequence[ClipSpec], folder: Path, show: Callable[[float], None]
+    specs: Sequence[ClipSpec],
+    folder: Path,
+    show: Callable[[float], None],
+    choices: dict[str, bool],
 ) -> list[ClipRecord]:
     from renderer.batch import render_clips
     from renderer.studio import Studio
@@ -155,7 +162,11 @@ def _render_here(
     studio = Studio()
     try:
         return render_clips(
-            specs, folder, source=studio, progress=lambda number, share: show(number + share)
+            specs,
+            folder,
+            source=studio,
+            progress=lambda number, share: show(number + share),
+            **choices,
         )
     finally:
         studio.close()

@@ -127,12 +127,23 @@ def _measured(record: ClipRecord) -> list[tuple[str, str]]:
         ),
         ("PSNR inside the eyes", ", ".join(f"{value:.1f} dB" for value in record.psnr_db)),
         ("SSIM inside the eyes", ", ".join(f"{value:.4f}" for value in record.ssim)),
+        *_flip(record),
+        *(("bound that does not hold", sentence) for sentence in record.missed),
         ("time per frame, median", f"{record.frame_ms_median:.0f} ms"),
         ("time to render", f"{record.render_s:.0f} s"),
         ("drawn by", f"{record.gl_renderer}, {record.gl_version}"),
         ("code version", record.code_version),
         ("SHA-256 of the frames", record.raw_sha256),
         ("SHA-256 of the file", record.file_sha256),
+    ]
+
+
+def _flip(record: ClipRecord) -> list[tuple[str, str]]:
+    """Return what encoding changed and what the LoDs change, both by FLIP."""
+    both = [("FLIP of the encoding", record.flip_encoding)]
+    both += [("FLIP between the LoDs", record.flip_lods)]
+    return [
+        (name, ", ".join(f"{value:.4f}" for value in values)) for name, values in both if values
     ]
 
 
