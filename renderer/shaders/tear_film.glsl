@@ -4,7 +4,7 @@
 
 uniform sampler2D u_micro_relief;  // slopes along u and v, mean square slope, a smooth field
 
-const float CORNEA_WAVES = 0.035;        // of the sclera's relief: 0.2 degrees
+const float CORNEA_WAVES = 0.027;        // of the sclera's relief: 0.23 degrees
 const float LIMBUS_WANDER_MM = 0.030;             // standard deviation of the edge's way, over millimetres
 const float PANNUS = 0.25;                        // how much wider the edge is above and below
 const vec3 LIMBAL_RING = vec3(0.50, 0.56, 0.64);  // what thin tissue over the dark angle returns

@@ -1,4 +1,4 @@
-"""What the upper lashes take from the globe's light: soft streaks below the upper lid."""
+"""What lids and lashes take from the globe's light: soft streaks and a dark band below the lid."""
 
 from __future__ import annotations
 
@@ -14,9 +14,16 @@ Map = npt.NDArray[np.float32]
 
 SIZE_PX = 384
 RIM_EDGE_MM = 18.0  # lids.glsl's
+EVEN_SKY = np.eye(9, 1).repeat(3, axis=1)  # the first harmonic alone
 
 
-def shade(gl: moderngl.Context, rims: LidRims, *, elevation_deg: float = 42.0) -> Map:
+def shade(
+    gl: moderngl.Context,
+    rims: LidRims,
+    *,
+    elevation_deg: float = 42.0,
+    sky: npt.ArrayLike = EVEN_SKY,
+) -> Map:
     """Return the clip's shade map (SIZE_PX, SIZE_PX, 4): sky in rgb, sun in a; row 0 below."""
     x = np.linspace(-RIM_EDGE_MM, RIM_EDGE_MM, 128)
     table = np.column_stack(
@@ -39,6 +46,7 @@ def shade(gl: moderngl.Context, rims: LidRims, *, elevation_deg: float = 42.0) -
         u_sun_direction=(0.0, np.sin(elevation), np.cos(elevation)),
         u_eye_to_world=np.eye(4),
         u_map_px=SIZE_PX,
+        u_ambient_sh=np.asarray(sky),
     )
     target = gl.framebuffer([gl.texture((SIZE_PX, SIZE_PX), 4, dtype="f4")])
     with gl.scope(target, moderngl.NOTHING):
@@ -86,10 +94,39 @@ def test_a_low_sun_shines_under_the_lashes(
     assert rows(high, -0.5, 1.5).mean() < 0.97
 
 
-def test_the_sky_is_a_little_darker_under_the_upper_lashes(
+def test_the_sky_fades_under_the_upper_lid(
     gl: moderngl.Context, average_rims: tuple[LidRims, LidRims]
 ) -> None:
+    """Dark where lid and globe meet, open in the middle: photographs show some 2 mm of shade."""
     sky = shade(gl, average_rims[0])[..., 1]
-    column = rows(sky, -3.0, 3.0).mean(axis=1)
-    assert column[-1] < column[0] < 1.0
+    column = rows(sky, -3.0, 2.6).mean(axis=1)
     assert column[0] > 0.85
+    assert column[-1] < 0.82 * column[0]
+    falls = column[len(column) // 2 :]
+    assert (np.diff(falls) < 0.005).all()
+
+
+def test_a_sky_from_above_is_hidden_most(
+    gl: moderngl.Context, average_rims: tuple[LidRims, LidRims]
+) -> None:
+    above = np.zeros((9, 3))
+    above[0], above[1] = 1.0, 0.55
+    even = rows(shade(gl, average_rims[0])[..., 1], 1.0, 2.6).mean()
+    assert rows(shade(gl, average_rims[0], sky=above)[..., 1], 1.0, 2.6).mean() < 0.97 * even
+
+
+def test_skin_colours_what_the_lids_leave(
+    gl: moderngl.Context, average_rims: tuple[LidRims, LidRims]
+) -> None:
+    white = np.zeros((9, 3))
+    white[0] = 1.0
+    under_lid = rows(shade(gl, average_rims[0], sky=white), 2.2, 2.6)
+    assert under_lid[..., :3].max() < 0.95
+    assert under_lid[..., 0].mean() > 1.02 * under_lid[..., 2].mean()
+
+
+def test_without_lids_the_whole_sky_counts(gl: moderngl.Context) -> None:
+    x = np.linspace(-RIM_EDGE_MM, RIM_EDGE_MM, 5)
+    away = [np.column_stack([x, np.full(5, y), np.full(5, 8.0)]) for y in (2000.0, -2000.0)]
+    sky = shade(gl, LidRims(*away))[..., :3]
+    np.testing.assert_allclose(rows(sky, -4.0, 4.0), 1.0, atol=1e-3)

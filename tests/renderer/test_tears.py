@@ -55,6 +55,27 @@ def test_the_hollow_turns_from_the_globes_normal_to_the_lids() -> None:
     np.testing.assert_allclose(np.linalg.norm(tears.tangents, axis=1), 1.0)
 
 
+@pytest.mark.parametrize("is_upper", [True, False])
+def test_the_line_is_uneven(is_upper: bool) -> None:
+    tears = strip(STRAIGHT, is_upper=is_upper)
+    rows = tears.points_mm.reshape(-1, ACROSS, 3)
+    middle = np.abs(rows[:, 0, 0]) < 8.0
+    height = np.linalg.norm(rows[middle, 0] - rows[middle, -1], axis=1)
+    assert 0.08 < height.std() / height.mean() < 0.35
+    gloss = tears.gloss.reshape(-1, ACROSS)[middle, 0]
+    assert gloss.mean() == pytest.approx(1.0, abs=0.25)
+    assert gloss.max() > 2 * gloss.min() > 0.0
+    # Its surface waves along the lid, so that the sun's image breaks.
+    along = (tears.normals * tears.tangents).sum(axis=1).reshape(-1, ACROSS)[middle, ACROSS // 2]
+    assert 0.05 < along.std() < 0.4
+
+
+def test_upper_and_lower_line_differ_and_keep_their_shape() -> None:
+    lower, upper, again = strip(STRAIGHT), strip(STRAIGHT, is_upper=True), strip(STRAIGHT)
+    np.testing.assert_array_equal(lower.gloss, again.gloss)
+    assert np.abs(lower.gloss - upper.gloss).mean() > 0.1
+
+
 def test_the_line_runs_dry_before_the_canthi() -> None:
     tears = strip(STRAIGHT)
     x = tears.points_mm[:, 0]
