@@ -18,6 +18,7 @@ from renderer.frame import FrameRenderer
 
 PART: Final = "cubes"
 SIZES_PX: Final = (128, 256, 512, 1024, 2048)
+BASE: Final = Detail.uniform("ultra")  # what the other effects are
 LEVEL: Final = {"static": "high", "dynamic": "ultra"}  # whose shader reads such a cube
 
 
@@ -32,8 +33,8 @@ def cube_steps(rounds: int, *, is_quick: bool) -> list[Step]:
 
 
 def _measure(stand: Stand, bench: Bench, *, size_px: int) -> None:
-    off = stand.spec(_ultra("off"))
-    specs = {kind: stand.spec(_ultra(level)) for kind, level in LEVEL.items()}
+    off = stand.spec(BASE.with_levels(reflection="off"))
+    specs = {kind: stand.spec(BASE.with_levels(reflection=level)) for kind, level in LEVEL.items()}
     frames = [mirroring(stand, kind, size_px) for kind in LEVEL]
     without, *times = stand.time([stand.frames(off), *frames])
     bench.rows.extend(
@@ -53,9 +54,9 @@ def _measure(stand: Stand, bench: Bench, *, size_px: int) -> None:
 
 def mirroring(stand: Stand, kind: str, size_px: int) -> FrameRenderer:
     """Return frames of an ultra eye that mirrors a cube of another size than its level's."""
-    detail = _ultra(LEVEL[kind])
+    detail = BASE.with_levels(reflection=LEVEL[kind])
     own_px = int(detail.setting("reflection", "cube_px"))
-    scene = stand.frames(stand.spec(_ultra("off"))).scene
+    scene = stand.frames(stand.spec(BASE.with_levels(reflection="off"))).scene
     kept = scene.crowd_cubes.get(own_px)
     scene.crowd_cubes[own_px] = CrowdCube(stand.studio.gl, size_px, scene.crowd)
     frames = stand.frames(stand.spec(detail))
@@ -64,7 +65,3 @@ def mirroring(stand: Stand, kind: str, size_px: int) -> FrameRenderer:
         scene.crowd_cubes[own_px] = kept
     frames.eye_models[0].values["u_static_cube"] = scene.surroundings.cube(size_px)
     return frames
-
-
-def _ultra(reflection: str) -> Detail:
-    return Detail.uniform("ultra").with_levels(reflection=reflection)

@@ -16,6 +16,7 @@ from renderer.benchmark.samples import sample_steps
 from renderer.benchmark.stand import Stand, Step, total_weight
 from renderer.benchmark.startup import memory_steps, startup_steps
 from renderer.benchmark.work import work_steps
+from renderer.studio import Studio
 
 ROUNDS: Final = 9
 QUICK_ROUNDS: Final = 3
@@ -66,8 +67,9 @@ def run_bench(
     started = time.monotonic()
     steps = steps_of(parts, is_quick=is_quick)
     rounds = QUICK_ROUNDS if is_quick else ROUNDS
-    stand = Stand(size or (QUICK_SIZE if is_quick else SIZE), rounds=rounds)
+    studio = Studio()
     try:
+        stand = Stand(studio, size or (QUICK_SIZE if is_quick else SIZE), rounds=rounds)
         bench = Bench(about=stand.about(is_quick=is_quick, seconds=0.0))
         for number, step in enumerate(steps):
             share = total_weight(steps[:number]) / total_weight(steps)
@@ -84,4 +86,4 @@ def run_bench(
             memory=bench.memory,
         )
     finally:
-        stand.close()
+        studio.close()

@@ -34,9 +34,9 @@ class Step:
 class Stand:
     """Make renderers of one size and time them."""
 
-    def __init__(self, size: tuple[int, int], *, rounds: int) -> None:
+    def __init__(self, studio: Studio, size: tuple[int, int], *, rounds: int) -> None:
         self.load_before = load()
-        self.studio = Studio()
+        self.studio = studio
         self.size = size
         self.rounds = rounds
         self.clock = clock_of(self.studio.gl_renderer)
@@ -94,10 +94,6 @@ class Stand:
             is_quick=is_quick,
             seconds=round(seconds, 1),
         )
-
-    def close(self) -> None:
-        """Give the context back."""
-        self.studio.close()
 
 
 def total_weight(steps: Iterable[Step]) -> float:
