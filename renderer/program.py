@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 import moderngl
@@ -42,13 +43,19 @@ def detail_constants(detail: Detail) -> dict[str, int]:
     }
 
 
-def assemble(name: str, constants: Constants | None = None) -> Source:
+def assemble(
+    name: str,
+    constants: Constants | None = None,
+    *,
+    swapped: Mapping[str, str] = MappingProxyType({}),
+) -> Source:
     """Read a shader, its includes (depth first, each file once) and the constants' header.
 
-    Raises FileNotFoundError naming the including file and line.
+    ``swapped`` gives the file that stands in for another: many eyes drawn together tell their
+    places otherwise than one eye does. Raises FileNotFoundError naming the including file and line.
     """
     files: list[str] = []
-    body = _expand(name, files, included_from="the program")
+    body = _expand(name, files, included_from="the program", swapped=swapped)
     header = "".join(_constant(key, value) for key, value in (constants or {}).items())
     return Source(VERSION_LINE + header + body, files)
 
@@ -59,7 +66,7 @@ def _constant(name: str, value: int | float) -> str:
     return f"const float {name} = {float(value)!r};\n"
 
 
-def _expand(name: str, files: list[str], *, included_from: str) -> str:
+def _expand(name: str, files: list[str], *, included_from: str, swapped: Mapping[str, str]) -> str:
     path = SHADERS / name
     if not path.is_file():
         raise FileNotFoundError(f"{included_from}: no shader file {name} in {SHADERS.name}/")
@@ -68,10 +75,12 @@ def _expand(name: str, files: list[str], *, included_from: str) -> str:
     lines = [f"#line 1 {number}"]
     for row, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         match = _INCLUDE.match(line)
+        wanted = swapped.get(match[1], match[1]) if match else ""
         if not match:
             lines.append(line)
-        elif match[1] not in files:
-            lines.append(_expand(match[1], files, included_from=f"{name}:{row}"))
+        elif wanted not in files:
+            place = f"{name}:{row}"
+            lines.append(_expand(wanted, files, included_from=place, swapped=swapped))
             lines.append(f"#line {row + 1} {number}")
     return "\n".join(lines) + "\n"
 
@@ -130,8 +139,9 @@ def build_program(
     geometry: str | None = None,
     constants: Constants | None = None,
     rewrite_fragment: Callable[[str], str] | None = None,
+    swapped: Mapping[str, str] = MappingProxyType({}),
 ) -> Program:
-    """Compile and link shader files of ``renderer/shaders``.
+    """Compile and link shader files of ``renderer/shaders``; ``swapped`` as in ``assemble``.
 
     ``rewrite_fragment`` changes the assembled fragment shader before it is compiled.
     Raises RuntimeError with our file names and lines when GLSL does not compile.
@@ -141,7 +151,9 @@ def build_program(
         "fragment_shader": fragment,
         "geometry_shader": geometry,
     }
-    sources = {stage: assemble(name, constants) for stage, name in stages.items() if name}
+    sources = {
+        stage: assemble(name, constants, swapped=swapped) for stage, name in stages.items() if name
+    }
     try:
         texts: dict[str, Any] = {stage: source.text for stage, source in sources.items()}
         if rewrite_fragment:

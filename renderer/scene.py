@@ -60,4 +60,6 @@ def build_scene(gl: moderngl.Context, spec: ClipSpec, *, last: Scene | None = No
         crowd = last.crowd
         crowd.light = light  # the same sun; the head's shadow may be another
         return Scene(key, surroundings, head, light, crowd, last.crowd_cubes)
-    return Scene(key, surroundings, head, light, Crowd(gl, spec, light))
+    return Scene(
+        key, surroundings, head, light, Crowd(gl, spec, light, static_cube=surroundings.cube)
+    )

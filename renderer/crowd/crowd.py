@@ -1,47 +1,69 @@
-"""The five other characters on the GPU: skinned once per frame, drawn into picture and cube.
+"""The other characters on the GPU: skinned once per frame, drawn into picture and cube.
 
-Who they are and where they stand: ``renderer.crowd.stage``.
+Who they are and where they stand: ``renderer.crowd.stage``. Only who can be seen is skinned and
+drawn. Five people keep painted eyes; a larger crowd has real ones (``renderer.crowd.eyes``).
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Final
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
 from renderer.clip import ClipSpec
-from renderer.crowd.figure import Body
+from renderer.crowd.culling import in_view
+from renderer.crowd.eyes import CrowdEyes, DrawnEye
 from renderer.crowd.figures import Troupe, build_figures
 from renderer.crowd.shares import light_shares
-from renderer.crowd.stage import GROUND_MM, members
+from renderer.crowd.skinned import SkinnedFigures, eyes_last, joined_triangles
+from renderer.crowd.stage import GROUND_MM, STAGE, Member, members
 from renderer.light import Light
-from renderer.program import assemble, build_program, plain_uniform
+from renderer.program import build_program
 
 Floats = npt.NDArray[np.float64]
+StaticCube = Callable[[int], moderngl.TextureCube]
+
+PAINTED_CROWD: Final = len(STAGE)  # the thesis's scene: its bystanders' eyes are paint
 
 
 class Crowd:
     """The crowd of a clip. Poses follow from time alone; ``draw`` shows the bystanders."""
 
-    def __init__(self, gl: moderngl.Context, spec: ClipSpec, light: Light) -> None:
+    def __init__(
+        self,
+        gl: moderngl.Context,
+        spec: ClipSpec,
+        light: Light,
+        *,
+        static_cube: StaticCube | None = None,
+        stage: Sequence[Member] | None = None,
+    ) -> None:
+        """``stage`` says who stands where instead of ``spec.crowd``.
+
+        ``static_cube`` gives the surroundings at a size; without it all eyes are painted.
+        """
         self.gl = gl
         self.light = light
-        self.figures = build_figures(members(spec.crowd))
+        cast = members(spec.crowd) if stage is None else stage
+        has_eyes = static_cube is not None and len(cast) > PAINTED_CROWD
+        self.figures = build_figures(cast, is_awake=has_eyes)
+        self.eyes_drawn: list[DrawnEye] = []  # in the last picture
         self._troupe = Troupe(self.figures)
         self._time_s: float | None = None
-        self._bones: list[Floats] = []
-        self._nowhere = gl.framebuffer([gl.renderbuffer((1, 1))])
+        self._bones: Floats = np.zeros((0, 0, 4, 4))
+        self._skinned: set[int] = set()
+        self._eyes: CrowdEyes | None = None
         if self.figures:
-            self._make_buffers()
+            self._make_buffers(static_cube if has_eyes else None)
 
     def pose(self, time_s: float) -> None:
-        """Skin everybody for a time; does nothing when they already stand so."""
+        """Pose everybody for a time; does nothing when they already stand so."""
         if time_s != self._time_s:
-            self._bones = list(self._troupe.bones(time_s))
-            # Capturing vertices needs a complete target, though nothing is drawn into it.
-            with self.gl.scope(self._nowhere, moderngl.NOTHING):
-                for number, transforms in enumerate(self._bones):
-                    self._skin(number, transforms)
+            self._bones = self._troupe.bones(time_s)
+            self._skinned.clear()
             self._time_s = time_s
 
     def bounds_mm(self) -> list[tuple[Floats, Floats]]:
@@ -51,6 +73,12 @@ class Crowd:
             for figure, transforms in zip(self.figures, self._bones, strict=True)
         ]
 
+    def vertices(self, time_s: float) -> npt.NDArray[np.float32]:
+        """Return everybody's vertices at a time: positions in mm and normals, (n, 6)."""
+        self.pose(time_s)
+        self._skin(range(len(self.figures)))
+        return self._meshes.vertices()
+
     def draw(
         self,
         *,
@@ -59,24 +87,70 @@ class Crowd:
         camera_mm: npt.NDArray[np.floating],
         time_s: float,
     ) -> None:
-        """Draw the bystanders into the picture (see the rule above)."""
+        """Draw the bystanders that a view shows into the picture (see the stage's rule)."""
+        self.eyes_drawn = []
         if not self.figures:
             return
         self.pose(time_s)
-        shown = [number for number, figure in enumerate(self.figures) if figure.member.is_shown]
+        seen = self.in_view(np.asarray(projection) @ np.asarray(view_matrix))
+        lines = int(self.gl.fbo.viewport[3])
+        if self._eyes:
+            self.eyes_drawn = self._eyes.choose(
+                self._bones,
+                view_matrix=view_matrix,
+                projection=projection,
+                lines=lines,
+                among=seen,
+            )
         self.draw_figures(
-            shown, view_matrix=view_matrix, projection=projection, camera_mm=camera_mm
+            seen,
+            view_matrix=view_matrix,
+            projection=projection,
+            camera_mm=camera_mm,
+            eyeless={eye.figure for eye in self.eyes_drawn},
         )
+        if self._eyes and self.eyes_drawn:
+            self._eyes.draw(
+                self.eyes_drawn,
+                light=self.light,
+                view_matrix=view_matrix,
+                projection=projection,
+                camera_mm=camera_mm,
+                lines=lines,
+            )
+
+    def in_view(self, world_to_clip: npt.NDArray[np.floating]) -> list[int]:
+        """Return the numbers of those who are shown and may be seen in the last pose."""
+        shown = [number for number, figure in enumerate(self.figures) if figure.member.is_shown]
+        spheres = [
+            (self.figures[number].carry_spheres(self._bones[number]), self.figures[number].spheres)
+            for number in shown
+        ]
+        if not shown:
+            return []
+        reached = in_view(
+            np.concatenate([centres for centres, _ in spheres]),
+            np.concatenate([rest[1] for _, rest in spheres]),
+            world_to_clip=world_to_clip,
+        )
+        ends = np.cumsum([len(centres) for centres, _ in spheres])[:-1]
+        parts = np.split(reached, ends)
+        return [number for number, part in zip(shown, parts, strict=True) if part.any()]
 
     def draw_figures(
         self,
-        numbers: list[int],
+        numbers: Sequence[int],
         *,
         view_matrix: npt.NDArray[np.floating],
         projection: npt.NDArray[np.floating],
         camera_mm: npt.NDArray[np.floating],
+        eyeless: Collection[int] = (),
     ) -> None:
-        """Draw figures by number in the pose of the last ``pose``, without changing state."""
+        """Draw figures by number in the pose of the last ``pose``, without changing state.
+
+        Those who are ``eyeless`` get real eyes from elsewhere, so the painted ones are left out.
+        """
+        self._skin(numbers)
         self._program.set(
             u_view_matrix=view_matrix,
             u_projection=projection,
@@ -85,16 +159,18 @@ class Crowd:
         )
         for number in numbers:
             first, count = self._index_ranges[number]
+            count = self._without_eyes[number] if number in eyeless else count
             self._vertices.render(moderngl.TRIANGLES, vertices=count, first=first)
 
     def draw_shadows(
         self,
-        numbers: list[int],
+        numbers: Sequence[int],
         *,
         view_matrix: npt.NDArray[np.floating],
         projection: npt.NDArray[np.floating],
     ) -> None:
         """Draw the figures' shadows on the ground as premultiplied coverage."""
+        self._skin(numbers)
         self._shadow.set(
             u_view_matrix=view_matrix,
             u_projection=projection,
@@ -114,56 +190,38 @@ class Crowd:
         ambient = float(0.886227 * sky.ambient_sh[0, 1] + 1.023328 * sky.ambient_sh[1, 1])
         return sun / max(sun + ambient, 1e-6)
 
-    def _skin(self, number: int, transforms: Floats) -> None:
-        matrices = np.swapaxes(transforms, 1, 2).astype(np.float32)
-        bones = plain_uniform(self._pose_program, "u_bones")
-        bones.write(np.ascontiguousarray(matrices).tobytes())
-        self._rest[number].transform(
-            self._posed, moderngl.POINTS, buffer_offset=self.figures[number].first_vertex * 24
-        )
+    def _skin(self, numbers: Sequence[int]) -> None:
+        missing = [number for number in numbers if number not in self._skinned]
+        if missing:
+            self._meshes.skin(missing, self._bones)
+            self._skinned.update(missing)
 
-    def _make_buffers(self) -> None:
-        gl = self.gl
-        self._pose_program = gl.program(
-            vertex_shader=assemble("crowd_pose.vert").text, varyings=("p_world", "n_world")
-        )
+    def _make_buffers(self, static_cube: StaticCube | None) -> None:
+        gl, figures = self.gl, self.figures
+        self._meshes = SkinnedFigures(gl, figures)
         self._program = build_program(gl, "crowd.vert", fragment="crowd.frag")
         self._shadow = build_program(gl, "crowd_shadow.vert", fragment="crowd_shadow.frag")
-        bodies = [figure.body for figure in self.figures]
-        total = sum(len(body.positions_mm) for body in bodies)
-        self._posed = gl.buffer(reserve=total * 24)
-        self._rest = [self._rest_vertices(body) for body in bodies]
-        fixed = [
-            np.hstack([f.body.surface, light_shares(f, self.light.sky.sun_direction)])
-            for f in self.figures
-        ]
+        shares = [light_shares(figure, self.light.sky.sun_direction) for figure in figures]
+        fixed = [np.hstack([f.body.surface, s]) for f, s in zip(figures, shares, strict=True)]
         surfaces = gl.buffer(np.concatenate(fixed).astype(np.float32).tobytes())
-        indices, self._index_ranges = self._indices([f.body.triangles for f in self.figures])
+        firsts = [figure.first_vertex for figure in figures]
+        bodies = [figure.body for figure in figures]
+        ordered = [eyes_last(body) if static_cube else (body.triangles, 0) for body in bodies]
+        self._without_eyes = [3 * others for _, others in ordered]
+        content, self._index_ranges = joined_triangles([rows for rows, _ in ordered], firsts)
         self._vertices = gl.vertex_array(
             self._program.gl_program,
             [
-                (self._posed, "3f 3f", "p_world", "n_world"),
+                (self._meshes.posed, "3f 3f", "p_world", "n_world"),
                 (surfaces, "4f 2f", "in_surface", "in_light"),
             ],
-            indices,
+            gl.buffer(content),
         )
-        outlines, self._outline_ranges = self._indices([f.body.outline for f in self.figures])
+        content, self._outline_ranges = joined_triangles([b.outline for b in bodies], firsts)
         self._shadow_vertices = gl.vertex_array(
-            self._shadow.gl_program, [(self._posed, "3f 3x4", "p_world")], outlines
+            self._shadow.gl_program,
+            [(self._meshes.posed, "3f 3x4", "p_world")],
+            gl.buffer(content),
         )
-
-    def _indices(
-        self, triangles: list[npt.NDArray[np.int64]]
-    ) -> tuple[moderngl.Buffer, list[tuple[int, int]]]:
-        """Return one buffer of all figures' triangles, and where each figure's part lies."""
-        firsts = [figure.first_vertex for figure in self.figures]
-        rows = [part + first for part, first in zip(triangles, firsts, strict=True)]
-        starts = np.cumsum([0, *[part.size for part in rows]]).tolist()
-        ranges = [(start, part.size) for start, part in zip(starts, rows, strict=False)]
-        return self.gl.buffer(np.concatenate(rows).astype(np.int32).tobytes()), ranges
-
-    def _rest_vertices(self, body: Body) -> moderngl.VertexArray:
-        rows = np.hstack([body.positions_mm, body.normals, body.bones, body.weights])
-        buffer = self.gl.buffer(rows.astype(np.float32).tobytes())
-        names = ("in_position", "in_normal", "in_bones", "in_weights")
-        return self.gl.vertex_array(self._pose_program, [(buffer, "3f 3f 4f 4f", *names)])
+        if static_cube:
+            self._eyes = CrowdEyes(gl, figures, shares=shares, static_cube=static_cube)

@@ -19,6 +19,7 @@ from renderer.crowd.motion import Places, place, stand, walk, wave
 from renderer.crowd.people import Person
 from renderer.crowd.recolour import recoloured
 from renderer.crowd.skeletons import Skeletons, Turns, turns_about
+from renderer.crowd.sockets import awake
 from renderer.crowd.stage import GROUND_MM, Member
 
 Floats = npt.NDArray[np.float64]
@@ -33,6 +34,7 @@ class Figure:
     """A member with its mesh, and where its vertices lie in the crowd's buffers.
 
     The mesh is of the size of the member's body; ``scale`` makes it as tall as the person.
+    ``is_awake`` where its lids are raised for real eyes.
     """
 
     member: Member
@@ -40,6 +42,7 @@ class Figure:
     first_vertex: int
     seed: int
     scale: float = 1.0
+    is_awake: bool = False
 
     @functools.cached_property
     def stride(self) -> float:
@@ -144,17 +147,19 @@ def _places(figures: Sequence[Figure], time_s: float) -> Places:
     )
 
 
-def build_figures(members: Sequence[Member]) -> tuple[Figure, ...]:
+def build_figures(members: Sequence[Member], *, is_awake: bool = False) -> tuple[Figure, ...]:
     """Return the members with their meshes, numbered for shared buffers."""
     worn = dict.fromkeys(member.person.body for member in members)
     bodies = {name: cached_body(TEMPLATES[name]) for name in worn}
+    if is_awake:
+        bodies = {name: awake(body) for name, body in bodies.items()}
     figures: list[Figure] = []
     first = 0
     for seed, member in enumerate(members):
         template = TEMPLATES[member.person.body]
         body = recoloured(bodies[template.name], template, person=member.person)
         scale = member.person.stature_mm / template.stature_mm
-        figures.append(Figure(member, body, first, seed, scale))
+        figures.append(Figure(member, body, first, seed, scale, is_awake))
         first += len(body.positions_mm)
     return tuple(figures)
 

@@ -21,7 +21,8 @@ SUN_RADIUS_RAD: Final = 0.05  # softer than the real 0.005, which vertex values 
 
 def light_shares(figure: Figure, sun: Floats) -> Floats:
     """Return (n, 2): openness to the sky and visibility of the sun, in the pose at time 0."""
-    key = f"crowd light {figure.member} {figure.seed} {np.round(sun, 6).tolist()}"
+    who = f"{figure.member} {figure.seed} {figure.is_awake}"
+    key = f"crowd light {who} {np.round(sun, 6).tolist()}"
     shares = cached_arrays(key, lambda: {"shares": _light_shares(figure, sun)})["shares"]
     return shares.astype(np.float64)
 

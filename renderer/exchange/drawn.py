@@ -56,8 +56,7 @@ def crowd_meshes(crowd: Crowd, time_s: float) -> Iterator[tuple[str, Mesh]]:
     """Yield the other characters by name, as they stand at a time."""
     if not crowd.figures:
         return
-    crowd.pose(time_s)
-    rows = np.frombuffer(crowd._posed.read(), np.float32).reshape(-1, 6).astype(np.float64)
+    rows = crowd.vertices(time_s).astype(np.float64)
     for number, figure in enumerate(crowd.figures):
         body = figure.body
         part = slice(figure.first_vertex, figure.first_vertex + len(body.positions_mm))

@@ -37,10 +37,20 @@ THICKNESS_PX: Final = {"high": 512, "ultra": 1024}  # finer than the nodes of ea
 MULTIPLE_SHARE: Final = 0.45  # of the reflectance: light scattered more than once, a smooth floor
 
 
-def iris_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail, *, sun_eye: Array) -> Values:
-    """Return the iris's textures and colours for a LoD; ``sun_eye`` (3,) points towards the sun."""
+def iris_values(
+    gl: moderngl.Context,
+    spec: ClipSpec,
+    detail: Detail,
+    *,
+    sun_eye: Array,
+    source: Iris | None = None,
+) -> Values:
+    """Return the iris's textures and colours for a LoD; ``sun_eye`` (3,) points towards the sun.
+
+    The iris is the clip's own unless a ``source`` is given.
+    """
     size = int(detail.setting("texture", "iris_map_px"))
-    source = iris_of(spec)
+    source = source or iris_of(spec)
     maps, height = source.maps(size), source.maps(min(size, HEIGHT_PX)).height_mm
     highest = max(float(height.max()), 1e-3)
     return {

@@ -111,13 +111,16 @@ def relief_shade_map(
 
 
 def rims_texture(gl: moderngl.Context, rims: LidRims) -> moderngl.Texture:
-    """Return the rims as a table over x: y of upper and lower rim, z of upper and lower rim."""
+    """Upload the rims of one eye as their table."""
+    return clamped(gl.texture((RIM_SAMPLES, 1), 4, rims_table(rims).tobytes(), dtype="f4"))
+
+
+def rims_table(rims: LidRims) -> npt.NDArray[np.float32]:
+    """Return the rims over x (1, RIM_SAMPLES, 4): y of upper and lower rim, z of both."""
     x = (np.arange(RIM_SAMPLES) + 0.5) / RIM_SAMPLES * 2 * RIM_EDGE_MM - RIM_EDGE_MM
     columns = [
         np.interp(x, curve[:, 0], curve[:, axis])
         for axis in (1, 2)
         for curve in (rims.upper_mm, rims.lower_mm)
     ]
-    table = np.stack(columns, axis=-1).astype(np.float32)[None]
-    texture = gl.texture((RIM_SAMPLES, 1), 4, table.tobytes(), dtype="f4")
-    return clamped(texture)
+    return np.stack(columns, axis=-1).astype(np.float32)[None]

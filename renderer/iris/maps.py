@@ -75,16 +75,17 @@ class IrisMaps:
     cavity: Field
 
 
-def iris_maps(seed: int, colour: str, *, size_px: int) -> IrisMaps:
-    """Return the maps of an iris with ``size_px`` texels a side, from 1 to 2048.
+def iris_maps(seed: int, colour: str, *, size_px: int, base_px: int = BASE_PX) -> IrisMaps:
+    """Return the maps of an iris with ``size_px`` texels a side, from 1 to ``base_px``.
 
-    Every size is a box filter in linear light of the same iris, baked once at 2048 and cached.
+    Every size is a box filter in linear light of the same iris, baked once at ``base_px`` and
+    cached: a small base is baked much faster, for eyes that are never seen large.
     Size 1 has the mean of the tissue between pupil and root, lying flat. Raises ValueError for an
     unknown colour or size.
     """
     family(colour)
-    check_size(size_px, BASE_PX)
-    return sized_maps(_kept(seed, colour, BASE_PX), size_px)
+    check_size(size_px, base_px)
+    return sized_maps(_kept(seed, colour, base_px), size_px)
 
 
 def sized_maps(kept: dict[str, npt.NDArray[Any]], size_px: int) -> IrisMaps:

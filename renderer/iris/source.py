@@ -16,17 +16,22 @@ from renderer.textures.noise import Field
 
 @dataclass(frozen=True)
 class Iris:
-    """One iris at any size: what the eye's shader and the exporters read."""
+    """One iris at any size: what the eye's shader and the exporters read.
+
+    ``base_px`` is the size of its finest maps: a smaller one is made sooner.
+    """
 
     seed: int
     colour: str
     file: str
     sha256: str
+    base_px: int = maps.BASE_PX
 
     def maps(self, size_px: int) -> IrisMaps:
-        """Return the maps with ``size_px`` texels a side, a power of two up to 2048."""
+        """Return the maps with ``size_px`` texels a side, a power of two; at most ``base_px``."""
         if not self.file:
-            return maps.iris_maps(self.seed, self.colour, size_px=size_px)
+            size = min(size_px, self.base_px)
+            return maps.iris_maps(self.seed, self.colour, size_px=size, base_px=self.base_px)
         return maps.sized_maps(read_iris(self.file, self.sha256), size_px)
 
     @property

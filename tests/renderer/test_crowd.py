@@ -65,13 +65,12 @@ def test_everyone_has_two_to_five_and_a_half_thousand_triangles_and_a_stature(cr
 
 
 def test_the_gpu_skins_as_numpy_does(crowd) -> None:
-    crowd.pose(1.7)
     figure = crowd.figures[1]
     body = figure.body
     full = np.zeros((len(body.positions_mm), len(BONES)))
     np.add.at(full, (np.arange(len(full))[:, None], body.bones), body.weights)
     expected = skin_vertices(body.positions_mm, figure.bones(1.7), weights=full)
-    posed = np.frombuffer(crowd._posed.read(), np.float32).reshape(-1, 6)
+    posed = crowd.vertices(1.7)
     found = posed[figure.first_vertex : figure.first_vertex + len(expected)]
     np.testing.assert_allclose(found[:, :3], expected, atol=0.05)
     np.testing.assert_allclose(np.linalg.norm(found[:, 3:], axis=1), 1.0, atol=1e-4)
@@ -79,8 +78,7 @@ def test_the_gpu_skins_as_numpy_does(crowd) -> None:
 
 
 def test_spheres_hold_the_posed_mesh(crowd) -> None:
-    crowd.pose(2.2)
-    posed = np.frombuffer(crowd._posed.read(), np.float32).reshape(-1, 6)[:, :3]
+    posed = crowd.vertices(2.2)[:, :3]
     for figure, (centres, radii) in zip(crowd.figures, crowd.bounds_mm(), strict=True):
         mesh = posed[figure.first_vertex : figure.first_vertex + len(figure.body.positions_mm)]
         beyond = np.linalg.norm(mesh[:, None] - centres[None], axis=2) - radii
