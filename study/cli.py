@@ -23,6 +23,7 @@ COMMANDS: Final = (
     "worker",
     "still",
     "export-scene",
+    "inspect",
     "bench",
     "certify",
     "gallery",
@@ -34,7 +35,8 @@ COMMANDS: Final = (
     "researcher",
 )
 EPILOG: Final = (
-    "STUDY is a built-in study (thesis, lod) or the path of a study file. Start with: ocularist run"
+    "STUDY is a built-in study (thesis, lod, approach) or the path of a study file. "
+    "Start with: ocularist run"
 )
 
 

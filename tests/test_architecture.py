@@ -17,7 +17,16 @@ PURE_RENDERER = (
     "renderer",
     *(
         f"renderer.{name}"
-        for name in ("camera", "clip", "detail", "lod_choice", "lod_policy", "manifest", "sources")
+        for name in (
+            "camera",
+            "clip",
+            "clip_checks",
+            "detail",
+            "lod_choice",
+            "lod_policy",
+            "manifest",
+            "sources",
+        )
     ),
 )
 # What study may know of the renderer; the entry point alone starts GL.
@@ -28,6 +37,7 @@ ROOMS = {
     "study.design": {"study.design"},
     "study.data": {"study.data", "study.design"},
     "study.site": {"study.site", "study.data", "study.design", "study.settings"},
+    "study.inspection": {"study.inspection", "study.site.headers", "study.site.resources"},
 }
 TOP = {
     *("analysis", "renderer", "study", "templates", "static", "tests", "docs", "deploy"),

@@ -1,0 +1,156 @@
+"""Single frames from anywhere, with their counters: what a person sees who looks into the scene.
+
+The thesis's demonstration (chapter 3): a camera that follows mouse and keys, counters of time and
+triangles, and the whole scene from above. Participants never see any of it.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections import OrderedDict
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from renderer.camera import View, iris_px, look_at, perspective, views
+from renderer.clip import ClipSpec
+from renderer.context import is_software
+from renderer.detail import LEVELS, Detail
+from renderer.frame import FrameRenderer
+from renderer.lod_path import Shares, places_of_view, shares_of
+from renderer.picture import Pixels
+from renderer.studio import Studio
+
+KEPT_RENDERERS: Final = 4  # the last ones stay, so that a key goes there and back quickly
+OVERHEAD_MM: Final = (3800.0, 5200.0, 7600.0)  # where the camera of the whole scene stands
+OVERHEAD_TARGET_MM: Final = (0.0, -900.0, -400.0)
+OVERHEAD_FOV_DEG: Final = 24.0
+BOTH: Final = (0, 1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Viewpoint:
+    """Where the camera is and when: angles in degrees, distance as ``iris_px`` on 1080 lines."""
+
+    azimuth_deg: float = 0.0
+    elevation_deg: float = 0.0
+    distance_px: float = 350.0
+    time_s: float = 0.0
+    eyes: tuple[int, ...] = BOTH
+    wireframe: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shot:
+    """A frame and what it took.
+
+    ``pixels`` (height, width, 3) uint8 sRGB; ``frame_ms`` until the finished frame was there, on a
+    GPU its own clock; ``triangles`` of everything drawn, all passes; ``iris_px`` and ``visible_px``
+    per eye, left and right; ``lods`` what each
+    eye is drawn with.
+    """
+
+    pixels: Pixels
+    frame_ms: float
+    triangles: int
+    iris_px: tuple[float, float]
+    visible_px: tuple[int, int]
+    lods: tuple[str, str]
+
+
+class Inspector:
+    """Draw one frame at a time, in the thread that the studio's GL context belongs to."""
+
+    def __init__(self, studio: Studio) -> None:
+        self._studio = studio
+        self._is_software = is_software(self._studio.gl_renderer)
+        self._kept: OrderedDict[str, FrameRenderer] = OrderedDict()
+
+    @property
+    def gl_renderer(self) -> str:
+        """The name of what draws."""
+        return self._studio.gl_renderer
+
+    def shot(self, spec: ClipSpec, viewpoint: Viewpoint) -> Shot:
+        """Draw the eyes of a clip from a viewpoint."""
+        renderer = self._renderer(spec, viewpoint.eyes)
+        renderer.wireframe = viewpoint.wireframe
+        shown = views(
+            spec,
+            viewpoint.azimuth_deg,
+            viewpoint.elevation_deg,
+            distance_px=viewpoint.distance_px,
+            eyes=viewpoint.eyes,
+        )
+        return self._draw(renderer, shown, viewpoint)
+
+    def overhead(self, spec: ClipSpec, viewpoint: Viewpoint) -> Shot:
+        """Draw the whole scene from above, everybody in it, at the viewpoint's time."""
+        renderer = self._renderer(spec, BOTH)
+        renderer.wireframe = False
+        return self._draw(renderer, (overhead_view(spec),), viewpoint)
+
+    def close(self) -> None:
+        """Give the context back."""
+        self._kept.clear()
+        self._studio.close()
+
+    def _draw(self, renderer: FrameRenderer, shown: tuple[View, ...], viewpoint: Viewpoint) -> Shot:
+        spec, gl = renderer.spec, self._studio.gl
+        places = places_of_view(spec, viewpoint.azimuth_deg, distance_px=viewpoint.distance_px)
+        counted = gl.query(time=True, primitives=True)
+        gl.finish()
+        started = time.perf_counter()
+        with counted:
+            frame = renderer.render_views(shown, time_s=viewpoint.time_s, places=places)
+        wall_ms = (time.perf_counter() - started) * 1e3
+        shares = shares_of(spec, places)
+        sizes = iris_px(spec, viewpoint.azimuth_deg, distance_px=viewpoint.distance_px)
+        return Shot(
+            pixels=frame.pixels,
+            frame_ms=wall_ms if self._is_software else int(counted.elapsed) / 1e6,
+            triangles=int(counted.primitives),
+            iris_px=(round(sizes[0], 1), round(sizes[1], 1)),
+            visible_px=frame.visible_px,
+            lods=(_named(shares[0]), _named(shares[1])),
+        )
+
+    def _renderer(self, spec: ClipSpec, eyes: tuple[int, ...]) -> FrameRenderer:
+        key = json.dumps([spec.clip_id, eyes])
+        if key not in self._kept:
+            self._kept[key] = self._studio.renderer(spec, eyes=eyes)
+            if len(self._kept) > KEPT_RENDERERS:
+                self._kept.popitem(last=False)
+        self._kept.move_to_end(key)
+        return self._kept[key]
+
+
+def _named(shares: Shares) -> str:
+    """Return what an eye is drawn with, such as "medium" or "medium 25 %, high 75 %"."""
+    known = {Detail.uniform(lod): lod for lod in LEVELS}
+    names = [(known.get(detail, "own levels"), share) for detail, share in shares]
+    if len(names) == 1:
+        return names[0][0]
+    return ", ".join(f"{name} {share:.0%}".replace("%", " %") for name, share in names)
+
+
+def overhead_view(spec: ClipSpec) -> View:
+    """Return a camera above the scene, high to one side: the thesis's Figure 3.1."""
+    position = np.array(OVERHEAD_MM)
+    projection = perspective(OVERHEAD_FOV_DEG, spec.width / spec.height, 500.0, 120000.0)
+    matrix = look_at(position, np.array(OVERHEAD_TARGET_MM))
+    return View((0, 0, spec.width, spec.height), matrix, projection, position, BOTH)
+
+
+def on_picture(view: View, point_mm: npt.ArrayLike) -> tuple[float, float] | None:
+    """Return where a view shows a point: shares of the width and height, from the upper left.
+
+    None for a point behind the camera.
+    """
+    clip = view.projection @ view.view_matrix @ np.append(np.asarray(point_mm, float), 1.0)
+    if clip[3] <= 0.0:
+        return None
+    return float(0.5 + 0.5 * clip[0] / clip[3]), float(0.5 - 0.5 * clip[1] / clip[3])

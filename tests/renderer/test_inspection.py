@@ -1,0 +1,80 @@
+"""Frames from anywhere with their counters, in real GL."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import moderngl
+import numpy as np
+import pytest
+
+from renderer.clip import ClipSpec
+from renderer.context import identify
+from renderer.detail import Detail
+from renderer.frame import FrameRenderer
+from renderer.inspection import Inspector, Viewpoint, on_picture, overhead_view
+from renderer.scene import Scene
+
+LOW = Detail.uniform("low")
+SPEC = ClipSpec(left=LOW, right=LOW, distance="near", width=192, height=108, crowd=0)
+
+
+@pytest.fixture(scope="module")
+def inspector(gl: moderngl.Context, standard_scene: Scene) -> Inspector:
+    scenes = [standard_scene]
+
+    def renderer(spec: ClipSpec, **options: Any) -> FrameRenderer:
+        made = FrameRenderer(gl, spec, scene=scenes[-1], **options)
+        scenes.append(made.scene)
+        return made
+
+    studio: Any = SimpleNamespace(
+        gl=gl, gl_renderer=identify(gl).renderer, renderer=renderer, close=lambda: None
+    )
+    return Inspector(studio)
+
+
+def test_the_camera_goes_where_it_is_sent(inspector: Inspector) -> None:
+    near = inspector.shot(SPEC, Viewpoint(distance_px=320.0))
+    far = inspector.shot(SPEC, Viewpoint(distance_px=80.0))
+    aside = inspector.shot(SPEC, Viewpoint(distance_px=80.0, azimuth_deg=40.0, elevation_deg=20.0))
+    assert near.iris_px == pytest.approx((32.0, 32.0), rel=0.05)
+    assert far.iris_px == pytest.approx((8.0, 8.0), rel=0.05)
+    assert near.visible_px[0] > 8 * far.visible_px[0] > 0
+    assert np.abs(aside.pixels.astype(int) - far.pixels).mean() > 5.0
+    assert near.frame_ms > 0.0
+    assert near.lods == ("low", "low")
+
+
+def test_triangles_follow_the_tessellation_and_lines_show_it(inspector: Inspector) -> None:
+    fine = SPEC.swapped()
+    fine = ClipSpec(**{**vars(SPEC), "left": LOW.with_levels(tessellation="medium")})
+    few, many = (inspector.shot(spec, Viewpoint(distance_px=320.0)) for spec in (SPEC, fine))
+    assert many.triangles - few.triangles == pytest.approx(350, rel=0.25)
+    assert many.lods == ("own levels", "low")
+    lines = inspector.shot(SPEC, Viewpoint(distance_px=320.0, wireframe=True))
+    assert lines.visible_px[0] < 0.8 * few.visible_px[0]
+
+
+def test_one_eye_alone_has_the_whole_picture(inspector: Inspector) -> None:
+    halves = ClipSpec(**{**vars(SPEC), "distance": "macroscopic"})
+    both = inspector.shot(halves, Viewpoint())
+    left = inspector.shot(halves, Viewpoint(eyes=(0,)))
+    assert both.visible_px[1] > 0
+    assert left.visible_px[1] == 0
+    assert left.visible_px[0] >= both.visible_px[0] > 0
+
+
+def test_the_scene_from_above_shows_the_person_where_it_says(inspector: Inspector) -> None:
+    view = overhead_view(SPEC)
+    seen = inspector.overhead(SPEC, Viewpoint())
+    place = on_picture(view, (0.0, -50.0, -80.0))
+    assert place is not None
+    row, column = int(place[1] * SPEC.height), int(place[0] * SPEC.width)
+    assert 0 < row < SPEC.height
+    assert 0 < column < SPEC.width
+    grass = seen.pixels[10:20, 10:20].reshape(-1, 3).mean(axis=0)
+    person = seen.pixels[row - 1 : row + 2, column - 1 : column + 2].reshape(-1, 3).mean(axis=0)
+    assert np.abs(person - grass).max() > 25.0
+    assert on_picture(view, 2.0 * view.position_mm) is None

@@ -1,0 +1,229 @@
+"""The page that looks into the scene: what it asks for, and in Chromium what keys and mouse do."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from socket import socket
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+import uvicorn
+from playwright.sync_api import Page, expect, sync_playwright
+
+from renderer.clip import ClipSpec
+from renderer.detail import EFFECTS, Detail
+from study.inspection.app import create_inspection
+from study.inspection.look import Look, code_of, detail_of
+
+LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
+BASE = ClipSpec(left=LOW, right=ULTRA, distance="near", width=320, height=180, iris_colour="brown")
+WAIT_MS = 30_000
+
+
+@dataclass
+class Drawn:
+    pixels: Any
+    facts: dict[str, object]
+
+
+@dataclass
+class Board:
+    """Stands in for GL: grey pictures, and a note of what was asked for and by which thread."""
+
+    asked: list[tuple[str, ClipSpec, Look]] = field(default_factory=list)
+    threads: set[int] = field(default_factory=set)
+    closed: int = 0
+    gl_renderer: str = "a board"
+
+    def shot(self, spec: ClipSpec, look: Look) -> Drawn:
+        return self._draw("shot", spec, look)
+
+    def overhead(self, spec: ClipSpec, look: Look) -> Drawn:
+        return self._draw("overhead", spec, look)
+
+    def close(self) -> None:
+        self.closed += 1
+        self.threads.add(threading.get_ident())
+
+    def _draw(self, what: str, spec: ClipSpec, look: Look) -> Drawn:
+        self.asked.append((what, spec, look))
+        self.threads.add(threading.get_ident())
+        if look.time == 13.0:
+            raise RuntimeError("no more paper")
+        facts: dict[str, object] = {
+            "ms": 12.5,
+            "triangles": 123456,
+            "iris_px": [100.0, 101.0],
+            "visible_px": [1000, 1001],
+            "lods": ["low", "ultra"],
+            "marks": {"camera": [0.5, 0.5], "eyes": [0.4, 0.4]},
+        }
+        return Drawn(np.full((spec.height, spec.width, 3), 90, np.uint8), facts)
+
+
+@pytest.fixture
+def board() -> Board:
+    return Board()
+
+
+@contextmanager
+def served(board: Board) -> Iterator[str]:
+    """The page on a free port; its address. Afterwards it has ended."""
+    app = create_inspection(BASE, lambda: board, hosts=("127.0.0.1",))
+    with socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        server = uvicorn.Server(uvicorn.Config(app, log_level="critical", access_log=False))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{listening.getsockname()[1]}"
+        finally:
+            server.should_exit = True
+            thread.join(10)
+
+
+@pytest.fixture
+def client(board: Board) -> Iterator[httpx.Client]:
+    with served(board) as address, httpx.Client(base_url=address, timeout=30) as one:
+        yield one
+
+
+def test_a_look_becomes_a_clip_of_the_command_with_these_levels() -> None:
+    look = Look(left="olmhulu", right="u" * 7, eyes="halves", divide=2)
+    spec = look.spec(BASE)
+    assert list(spec.left.levels().values()) == [
+        *("off", "low", "medium", "high", "ultra", "low", "ultra")
+    ]
+    assert (spec.right, spec.distance, spec.iris_colour) == (ULTRA, "macroscopic", "brown")
+    assert (spec.width, spec.height) == (160, 90)
+    assert detail_of(code_of(LOW.with_levels(sclera="off"))) == LOW.with_levels(sclera="off")
+
+
+def test_pictures_come_with_their_facts_from_one_thread(client: httpx.Client, board: Board) -> None:
+    answers = [client.get("/frame?azimuth=30&left=ooooooo"), client.get("/overhead")]
+    assert [answer.headers["content-type"] for answer in answers] == ["image/jpeg"] * 2
+    assert json.loads(answers[0].headers["x-inspect"])["triangles"] == 123456
+    assert [what for what, _, _ in board.asked] == ["shot", "overhead"]
+    assert board.asked[0][2].azimuth == 30.0
+    assert len(board.threads) == 1
+    assert threading.get_ident() not in board.threads
+
+
+def test_the_renderer_is_closed_in_its_own_thread(board: Board) -> None:
+    with served(board) as address:
+        httpx.get(f"{address}/frame", timeout=30)
+    assert board.closed == 1
+    assert len(board.threads) == 1
+
+
+@pytest.mark.parametrize(
+    ("query", "told"),
+    [
+        ("left=uuux", "left"),
+        ("elevation=95", "less than or equal to 80"),
+        ("eyes=third", "'both', 'halves', 'left' or 'right'"),
+        ("zoom=2", "Extra inputs are not permitted"),
+    ],
+)
+def test_a_wrong_look_is_told(client: httpx.Client, board: Board, query: str, told: str) -> None:
+    answer = client.get(f"/frame?{query}")
+    assert answer.status_code == 422
+    assert told in answer.text
+    assert board.asked == []
+
+
+def test_what_went_wrong_is_told_and_the_next_picture_comes(client: httpx.Client) -> None:
+    answer = client.get("/frame?time=13")
+    assert (answer.status_code, answer.text) == (500, "RuntimeError: no more paper")
+    assert client.get("/frame").status_code == 200
+
+
+def test_other_sites_names_do_not_reach_in(client: httpx.Client) -> None:
+    assert client.get("/", headers={"host": "elsewhere.example"}).status_code == 400
+
+
+@pytest.fixture
+def page(board: Board) -> Iterator[Page]:
+    errors: list[str] = []
+    with served(board) as address, sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path="/usr/bin/chromium", args=["--no-sandbox", "--disable-dev-shm-usage"]
+        )
+        one = browser.new_page(viewport={"width": 1200, "height": 800})
+        one.set_default_timeout(WAIT_MS)
+        one.on("pageerror", lambda error: errors.append(str(error)))
+        one.goto(f"{address}/")
+        yield one
+        browser.close()
+    assert errors == []
+
+
+def settled(board: Board, *, more_than: int) -> Look:
+    """Wait until a fine picture was asked for after so many; return what it asked."""
+    for _ in range(600):
+        asked = [look for what, _, look in list(board.asked)[more_than:] if what == "shot"]
+        if asked and asked[-1].divide == 1:
+            return asked[-1]
+        time.sleep(0.05)
+    raise AssertionError("the page never asked for a fine picture")
+
+
+def test_mouse_and_keys_move_the_camera_and_change_levels(page: Page, board: Board) -> None:
+    expect(page.locator("#picture[data-width='320']")).to_be_visible(timeout=WAIT_MS)
+    expect(page.locator("#above[data-drawn]")).to_be_visible(timeout=WAIT_MS)
+    first = settled(board, more_than=0)
+    assert (first.left, first.right, first.distance) == ("l" * 7, "u" * 7, 160.0)
+    expect(page.locator("#triangles")).to_have_text("123,456")
+    expect(page.locator("#rate")).to_have_text("80")
+
+    box = page.locator("#picture").bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    before = len(board.asked)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x - 80, y + 40, steps=4)
+    page.mouse.up()
+    turned = settled(board, more_than=before)
+    assert (turned.azimuth, turned.elevation) == (20.0, 10.0)
+    assert any(look.divide == 2 for _, _, look in board.asked[before:])
+
+    before = len(board.asked)
+    page.mouse.wheel(0, -500)
+    assert settled(board, more_than=before).distance > 200.0
+
+    before = len(board.asked)
+    page.keyboard.press("e")  # the left eye
+    page.keyboard.press("5")
+    page.keyboard.press("w")
+    page.keyboard.press("v")
+    changed = settled(board, more_than=before)
+    assert changed.left == "llll" + "m" + "ll"
+    assert changed.right == "u" * 7
+    assert changed.wireframe
+    assert changed.eyes == "halves"
+    select = page.get_by_label(f"{EFFECTS[4]}, left eye")
+    expect(select).to_have_value("m")
+
+    before = len(board.asked)
+    select.select_option("off")
+    page.locator("#picture").focus()
+    page.keyboard.press("r")
+    assert settled(board, more_than=before) == first
+
+
+def test_a_picture_that_fails_is_told_on_the_page(page: Page, board: Board) -> None:
+    settled(board, more_than=0)
+    address = page.url
+    assert httpx.get(f"{address}frame?time=13").status_code == 500
+    page.route("**/frame*", lambda route: route.fulfill(status=500, body="RuntimeError: gone"))
+    page.locator("#picture").focus()
+    page.keyboard.press("ArrowLeft")
+    expect(page.locator("#waiting")).to_have_text("No picture: 500: RuntimeError: gone")
