@@ -42,7 +42,7 @@ def write_chart(bench: Bench, stem: Path) -> list[Path]:
         return []
     across = min(len(panels), 2)
     down = -(-len(panels) // across)
-    figure = Figure(figsize=(5.6 * across, 3.9 * down + 0.5), layout="constrained")
+    figure = Figure(figsize=(5.8 * across, 4.3 * down + 0.4), layout="constrained")
     figure.suptitle(
         f"{bench.about.renderer}, {bench.about.size}, {bench.about.clock}",
         fontsize=SMALL,

@@ -57,7 +57,7 @@ def draw_effects(axes: Axes, rows: list[Cost]) -> None:
             for row in rows:
                 if (row.base, row.effect, row.level) != (base, effect, level):
                     continue
-                y = place + 0.27 - 0.18 * step
+                y = place + 0.3 - 0.2 * step
                 axes.errorbar(
                     row.ms_median, y, xerr=row.ms_mad, color=COLOURS[level], marker=MARKERS[level],
                     ms=4.5, lw=1.0,
@@ -77,12 +77,15 @@ def draw_samples(axes: Axes, rows: list[Cost]) -> None:
         axes.plot(x, y, color=colour, marker=marker, ms=5, lw=0.0 if is_ours else 1.0)
         for row, ms, rms in zip(own, x, y, strict=True):
             name = f"ours, {row.level}" if is_ours else f"{row.samples} samples"
-            _label(axes, ms, rms, name, colour)
+            below = is_ours and row.level == "ultra"  # both of ours may lie at the same height
+            _label(axes, ms, rms, name, colour, up=-8 if below else 7)
     axes.set_yscale("log")
+    axes.minorticks_off()
     _plain_log(axes, [row.rms_percent or 0.0 for row in rows])
     axes.set_xlabel("ms of subsurface, one eye", fontsize=SMALL)
     axes.set_ylabel("rms error, %", fontsize=SMALL)
-    axes.margins(x=0.2)
+    axes.margins(x=0.2, y=0.12)
+    axes.set_xlim(left=min(0.0, *(row.ms_median for row in rows)))
 
 
 def draw_cubes(axes: Axes, rows: list[Cost]) -> None:
@@ -107,17 +110,17 @@ def draw_crowd(axes: Axes, rows: list[Cost]) -> None:
     """A frame's time by the number of people."""
     x, y = [row.crowd or 0 for row in rows], [row.ms_median for row in rows]
     axes.errorbar(x, y, yerr=[row.ms_mad for row in rows], color=TWO[0], marker="o", ms=4.5, lw=1.3)
-    for people, ms in zip(x, y, strict=True):
-        _label(axes, people, ms, f"{people}", TWO[0])
+    axes.set_xticks(x)
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("other people in the scene", fontsize=SMALL)
     axes.set_ylabel(f"ms per frame, {rows[0].distance}, two {rows[0].lod} eyes", fontsize=SMALL)
     axes.margins(x=0.1)
 
 
-def _label(axes: Axes, x: float, y: float, text: str, colour: str) -> None:
+def _label(axes: Axes, x: float, y: float, text: str, colour: str, *, up: float = 0.0) -> None:
+    """Write beside a point, ``up`` points of type above its middle."""
     axes.annotate(
-        text, (x, y), xytext=(6, 0), textcoords="offset points", va="center", fontsize=SMALL,
+        text, (x, y), xytext=(6, up), textcoords="offset points", va="center", fontsize=SMALL,
         color=colour,
     )  # fmt: skip
 
