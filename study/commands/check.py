@@ -53,11 +53,12 @@ def summary(definition: StudyDefinition) -> Iterator[str]:
         "after each clip"
     )
     yield ""
-    yield f"{'clip':24}{'distance':14}{'left':18}{'right':18}"
+    width = max(24, *(len(clip.id) + 2 for clip in definition.every_clip))
+    yield f"{'clip':{width}}{'distance':14}{'left':18}{'right':18}"
     for clip in definition.every_clip:
         mark = " (practice)" if clip in definition.practice else ""
         mark = " (catch)" if clip.is_catch else mark
-        yield f"{clip.id:24}{clip.distance:14}{clip.left:18}{clip.right:18}{mark}".rstrip()
+        yield f"{clip.id:{width}}{clip.distance:14}{clip.left:18}{clip.right:18}{mark}".rstrip()
 
 
 def audit_lines(definition: StudyDefinition) -> Iterator[str]:

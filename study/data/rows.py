@@ -72,7 +72,7 @@ def rating_rows(
             "lod": lods[eye],
             "lod_rank": lod_rank(lods[eye]),
             "other_lod": lods[other],
-            **definition.detail(lods[eye]).levels(),
+            **definition.levels(lods[eye]),
             "rating": collected.trial.answers.get(f"rating_{eye}"),
         }
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Final
 
 from analysis.audit import Audit, ShownClip, audit_design
-from renderer.camera import iris_px
+from renderer.camera import iris_px, iris_px_of_frame
 from renderer.detail import EFFECTS
 from study.design.definition import StudyDefinition
 from study.design.pairings import Clip
@@ -84,6 +84,13 @@ def _general(definition: StudyDefinition) -> Iterator[str]:
     for name in ("rating_left", "rating_right", "comparison", "noticed"):
         if name not in asked:
             yield f"questions: none is called {name}; the analysis goes without it"
+    for distance in definition.distances:
+        motions = {c.motion for c in definition.trial_clips if c.distance == distance}
+        if len(motions) > 1:
+            yield (
+                f"clips: at {distance} some turn around the eyes and some approach them; the "
+                "tables do not tell them apart"
+            )
     used = {lod for clip in definition.every_clip for lod in (clip.left, clip.right)}
     bases = {row.base for row in definition.lods.values()}
     for lod in definition.lods:
@@ -110,6 +117,9 @@ def _hidden(definition: StudyDefinition) -> Iterator[str]:
 
 
 def largest_iris_px(definition: StudyDefinition, clip: Clip, size: Size) -> float:
-    """Return the iris's largest diameter in a clip, in pixels: facing the camera."""
+    """Return the iris's largest diameter in a clip, in pixels."""
     spec = definition.clip_spec(clip, size=size, orbit_direction=definition.orbit.directions[0])
-    return max(iris_px(spec, 0.0))
+    if spec.motion == "orbit":
+        return max(iris_px(spec, 0.0))  # facing the camera
+    ends = (iris_px_of_frame(spec, frame) for frame in (0, spec.frame_count - 1))
+    return max(map(max, ends))

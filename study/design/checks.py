@@ -12,6 +12,7 @@ from typing import Final
 from pydantic import ValidationError
 
 from renderer.detail import EFFECTS
+from study.design.approach import check_approaches, check_switching
 from study.design.faults import Fault, Place, dotted, unknown
 from study.design.pairings import CatchClip, Factors
 from study.design.question_checks import check_questions
@@ -27,6 +28,8 @@ def _check_lods(data: Data) -> Iterator[Fault]:
     lods = table_of(data, "lods")
     for name, row in lods.items():
         if not isinstance(row, Mapping):
+            continue
+        if row.get("switching") is not None:
             continue
         base = row.get("base")
         if base is None:
@@ -118,6 +121,8 @@ def _check_repeats(data: Data) -> Iterator[Fault]:
 
 _CHECKS: Final[tuple[Callable[[Data], Iterator[Fault]], ...]] = (
     _check_lods,
+    check_switching,
+    check_approaches,
     _check_references,
     _check_clips,
     check_questions,

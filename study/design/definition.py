@@ -8,20 +8,23 @@ from __future__ import annotations
 import hashlib
 import json
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
 
-from renderer.clip import PATHS, ClipSpec
-from renderer.detail import Detail
+from renderer.clip import DIRECTIONS, PATHS, ClipSpec
+from renderer.detail import EFFECTS, Detail
+from renderer.lod_choice import LodPolicy
+from study.design.approach import Approach, PolicyData, policy_of
 from study.design.checks import cross_faults
 from study.design.faults import DefinitionError, Fault, faults_of, suggestion
-from study.design.files import find_files, without_paths
+from study.design.files import find_files, without_later_keys, without_paths
 from study.design.pairings import CatchClip, Clip, Factors, LodRow, all_clips, detail_of
 from study.design.parts import (
     Distance,
@@ -69,6 +72,8 @@ class StudyDefinition(Part):
     sizes: Annotated[tuple[SizeText, ...], Field(min_length=1)]
     distances: Annotated[tuple[Distance, ...], Field(min_length=1)]
     orbit: Orbit = Orbit()
+    approach: Approach = Approach()
+    lod_policy: PolicyData | None = None
     eye: Eye = Eye()
     scene: Scene = Scene()
     lods: Annotated[dict[Name, LodRow], Field(min_length=1)]
@@ -99,19 +104,46 @@ class StudyDefinition(Part):
         return {clip.id: clip for clip in self.every_clip}[clip_id]
 
     def detail(self, lod: str) -> Detail:
-        """Return a LoD's seven levels; raises KeyError for a name that the file does not define."""
+        """Return a LoD's seven levels; raises KeyError for a name that the file does not define.
+
+        Those of a LoD that switches are its policy's finest.
+        """
+        if self.lods[lod].switching is not None:
+            return self._policy.finest
         return detail_of(self.lods, lod)
 
+    def levels(self, lod: str) -> dict[str, str | None]:
+        """Return effect -> level of a LoD, None for each where it switches."""
+        if self.lods[lod].switching is not None:
+            return dict.fromkeys(EFFECTS)
+        return dict(self.detail(lod).levels())
+
+    @cached_property
+    def _policy(self) -> LodPolicy:
+        return policy_of(self.lod_policy)
+
     def clip_spec(self, clip: Clip, *, size: Size, orbit_direction: str) -> ClipSpec:
-        """Return everything that the frames of one clip depend on."""
+        """Return everything that the frames of one clip depend on.
+
+        An approach straight ahead is the same in both directions, and rendered once.
+        """
+        motion: dict[str, Any] = {"duration_s": self.orbit.duration_s}
+        if clip.motion == "approach":
+            motion = self.approach.fields(clip.distance)
+            if self.approach.azimuth_deg == 0.0:
+                orbit_direction = DIRECTIONS[0]
+        switching = [self.lods[lod].switching or "fixed" for lod in (clip.left, clip.right)]
         return ClipSpec(
             left=self.detail(clip.left),
             right=self.detail(clip.right),
+            left_switching=switching[0],
+            right_switching=switching[1],
+            lod_policy=None if switching == ["fixed", "fixed"] else self._policy,
             distance=clip.distance,
             orbit_deg=self.orbit.orbit_deg,
             orbit_direction=orbit_direction,
-            duration_s=self.orbit.duration_s,
             fps=self.orbit.fps,
+            **motion,
             width=size.width,
             height=size.height,
             preset=self.preset,
@@ -149,9 +181,11 @@ class StudyDefinition(Part):
     def definition_hash(self) -> str:
         """16 hexadecimal digits over the contents.
 
-        Comments, the order of keys and the places of pictures do not matter.
+        Comments, the order of keys and the places of pictures do not matter, nor do keys that came
+        later as long as they are left out.
         """
-        text = json.dumps(without_paths(self.model_dump(mode="json"), PATHS), sort_keys=True)
+        told = without_later_keys(self.model_dump(mode="json"))
+        text = json.dumps(without_paths(told, PATHS), sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -192,9 +226,20 @@ def parse_definition(
         definition = StudyDefinition.model_validate(dict(data))
     except ValidationError as error:
         faults = faults_of(error, StudyDefinition) + faults
+    faults = faults or list(_clip_faults(definition))
     if faults:
         raise DefinitionError(source, list(dict.fromkeys(faults)))
     return definition
+
+
+def _clip_faults(definition: StudyDefinition) -> Iterator[Fault]:
+    """Yield what a clip refuses about an approach: its end may lie too near for a size's shape."""
+    for size, clip in product(definition.sizes, definition.every_clip):
+        if clip.motion == "approach":
+            try:
+                definition.clip_spec(clip, size=size, orbit_direction=DIRECTIONS[0])
+            except ValueError as error:
+                yield Fault("approach", f"{size}: {error}")
 
 
 def _read_text(name_or_path: str) -> tuple[str, str]:

@@ -7,12 +7,13 @@ and its SHA-256, which alone decides what a clip is.
 from __future__ import annotations
 
 import hashlib
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from study.design.faults import Fault
-from study.design.raw import Data, table_of
+from study.design.raw import Data, rows_of, table_of
 
 ENVIRONMENT_KINDS: Final = (".exr", ".hdr")
 SUN_KEYS: Final = ("sun_azimuth_deg", "sun_elevation_deg")
@@ -23,7 +24,8 @@ def find_files(data: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
     scene, faults = _with_environment(table_of(data, "scene"), folder)
     eye, more = _with_iris(table_of(data, "eye"), folder)
     found = {name: table for name, table in (("scene", scene), ("eye", eye)) if table}
-    return {**data, **found}, [*faults, *more]
+    policy, amiss = _with_policy(data.get("lod_policy"), folder)
+    return {**data, **found, **policy}, [*faults, *more, *amiss]
 
 
 def _with_environment(scene: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
@@ -66,10 +68,59 @@ def _with_iris(eye: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
     return {**eye, "iris_file": str(path), "iris_sha256": sha256}, faults
 
 
+def _with_policy(named: object, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
+    """Put the contents of ``lod_policy = "lod_policy.json"`` in the place of its path."""
+    if not isinstance(named, str):
+        return {}, []
+    path = (folder / named).absolute()
+    try:
+        return {"lod_policy": json.loads(path.read_text(encoding="utf-8"))}, []
+    except OSError as error:
+        fault = f"{path}: {error.strerror}"
+    except ValueError as error:
+        fault = f"{path}: not a JSON file: {error}"
+    return {"lod_policy": None}, [Fault("lod_policy", fault)]
+
+
 def contents_sha256(path: Path) -> str:
     """Return the SHA-256 of a file's contents, 64 hexadecimal digits; raises OSError."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+# What definitions of an earlier version did not hold, with what it is when it is left out.
+_LATER: Final[Mapping[str, Any]] = {"lod_policy": None, "motion": "orbit", "switching": None}
+
+
+def without_later_keys(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Leave out keys that came later and say nothing, here and in every table of a definition.
+
+    So a definition without them is told from others just as before they came. ``approach`` says
+    nothing where no clip approaches.
+    """
+    kept = _said(data)
+    if not any(row.get("motion") == "approach" for row in _clip_rows(data)):
+        kept.pop("approach", None)
+    return kept
+
+
+def _said(table: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        key: _said_within(value)
+        for key, value in table.items()
+        if key not in _LATER or value != _LATER[key]
+    }
+
+
+def _said_within(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return _said(value)
+    return [_said_within(entry) for entry in value] if isinstance(value, list) else value
+
+
+def _clip_rows(data: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    tables = ("practice", "clips", "factors", "catch")
+    return [row for table in tables for _, row in rows_of(data, table)]
 
 
 def without_paths(tables: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:

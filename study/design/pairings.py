@@ -12,13 +12,17 @@ from pydantic import Field, field_validator
 
 from renderer.detail import EFFECTS, LEVELS, Detail
 from study.design.faults import refuse, unknown
-from study.design.parts import Distance, Name, Part
+from study.design.parts import Distance, Motion, Name, Part
 
 
 class LodRow(Part):
-    """One LoD: the level of each effect; ``base`` names the LoD that fills in unnamed effects."""
+    """One LoD: the level of each effect; ``base`` names the LoD that fills in unnamed effects.
+
+    A row with ``switching`` has no levels: the eye's LoD follows from its size on the picture.
+    """
 
     base: str | None = None
+    switching: Literal["blended", "instant"] | None = None
     texture: str | None = None
     refraction: str | None = None
     reflection: str | None = None
@@ -54,6 +58,7 @@ class Clip(Part):
     distance: Distance
     left: str
     right: str
+    motion: Motion = "orbit"
 
     @property
     def is_catch(self) -> bool:
@@ -67,11 +72,14 @@ class CatchClip(Part):
     id: Name | None = None
     distance: Distance
     lod: str
+    motion: Motion = "orbit"
 
     def clip(self) -> Clip:
         """Return the clip that shows this LoD twice."""
         name = self.id or f"catch-{self.distance}-{self.lod}"
-        return Clip(id=name, distance=self.distance, left=self.lod, right=self.lod)
+        return Clip(
+            id=name, distance=self.distance, left=self.lod, right=self.lod, motion=self.motion
+        )
 
 
 class Factors(Part):
@@ -85,9 +93,13 @@ class Factors(Part):
     lods: Annotated[tuple[str, ...], Field(min_length=1)]
     against: Annotated[tuple[str, ...], Field(min_length=1)]
     sides: Literal["given", "swapped", "both", "alternating"] = "both"
+    motion: Motion = "orbit"
 
     def clips(self) -> Iterator[Clip]:
-        """Generate the clips, named ``near-low-ultra``: distance, left, right."""
+        """Generate the clips, named ``near-low-ultra``: distance, left, right.
+
+        An approach's names begin with ``approach-``.
+        """
         pairs = [
             (distance, lod, other)
             for distance in self.distances
@@ -98,13 +110,19 @@ class Factors(Part):
         for index, (distance, lod, other) in enumerate(pairs):
             is_odd = index % 2 == 1
             if self.sides in ("given", "both") or (self.sides == "alternating" and not is_odd):
-                yield _pair(distance, lod, other)
+                yield self._pair(distance, lod, other)
             if self.sides in ("swapped", "both") or (self.sides == "alternating" and is_odd):
-                yield _pair(distance, other, lod)
+                yield self._pair(distance, other, lod)
 
-
-def _pair(distance: str, left: str, right: str) -> Clip:
-    return Clip(id=f"{distance}-{left}-{right}", distance=distance, left=left, right=right)
+    def _pair(self, distance: str, left: str, right: str) -> Clip:
+        start = "approach-" if self.motion == "approach" else ""
+        return Clip(
+            id=f"{start}{distance}-{left}-{right}",
+            distance=distance,
+            left=left,
+            right=right,
+            motion=self.motion,
+        )
 
 
 def all_clips(

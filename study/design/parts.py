@@ -74,6 +74,7 @@ def clip_value(field: str) -> AfterValidator:
 
 Distance = Annotated[str, clip_value("distance")]
 Direction = Annotated[str, clip_value("orbit_direction")]
+Motion = Annotated[str, clip_value("motion")]
 
 
 class Size(Part):

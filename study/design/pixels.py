@@ -6,13 +6,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from renderer.camera import iris_px
+from renderer.camera import iris_px_of_frame
 from renderer.clip import ClipSpec
 
 
 @lru_cache(maxsize=4096)
 def median_iris_px(spec: ClipSpec) -> tuple[float, float]:
-    """Return the iris's diameter in the clip's pixels, left and right, as median over the orbit."""
-    frames = [iris_px(spec, spec.azimuth_deg(frame)) for frame in range(0, spec.frame_count, 5)]
+    """Return the median of the iris's diameter over a clip's frames in pixels, left and right."""
+    frames = [iris_px_of_frame(spec, frame) for frame in range(0, spec.frame_count, 5)]
     left, right = np.median(frames, axis=0)
     return round(float(left), 2), round(float(right), 2)

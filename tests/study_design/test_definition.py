@@ -74,8 +74,8 @@ def test_lod_starts_refraction_at_medium_and_asks_question_1_neutrally() -> None
 
 
 def test_built_in_studies_are_sound_and_found_by_name() -> None:
-    assert built_in_names() == ["lod", "thesis"]
-    assert [read_definition(name).key for name in built_in_names()] == ["lod", "thesis"]
+    assert built_in_names() == ["approach", "lod", "thesis"]
+    assert [read_definition(name).key for name in built_in_names()] == built_in_names()
 
 
 def test_rendering_order_lets_people_start_after_one_direction_of_one_size(
@@ -143,7 +143,7 @@ def test_a_missing_file_names_the_built_in_studies() -> None:
         read_definition("thesys")
     assert str(caught.value) == (
         "thesys: cannot be read (No such file or directory); give the path of a TOML file or a "
-        'built-in study: lod, thesis; did you mean "thesis"?'
+        'built-in study: approach, lod, thesis; did you mean "thesis"?'
     )
 
 

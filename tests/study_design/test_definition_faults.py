@@ -46,8 +46,9 @@ CASES: list[tuple[Change, str]] = [
     ),
     (
         lambda raw: raw["lods"]["low"].update(caustic="low"),
-        'lods.low.caustic: unknown key "caustic"; choose one of base, texture, refraction, '
-        'reflection, subsurface, caustics, tessellation, sclera; did you mean "caustics"?',
+        'lods.low.caustic: unknown key "caustic"; choose one of base, switching, texture, '
+        "refraction, reflection, subsurface, caustics, tessellation, sclera; "
+        'did you mean "caustics"?',
     ),
     (
         lambda raw: raw["clips"][0].update(left="lo"),
