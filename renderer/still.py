@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Final
 
 from PIL import Image
 
@@ -11,8 +12,11 @@ from renderer.clip import ClipSpec
 from renderer.context import create_context, identify
 from renderer.exchange.exr import Attribute, write_exr
 from renderer.frame import FrameRenderer
+from renderer.group import GroupRenderer
 from renderer.picture import EXPOSURE
 from renderer.sources import code_version
+
+VIEWS: Final = ("face", "crowd")
 
 
 def write_still(
@@ -23,16 +27,19 @@ def write_still(
     elevation_deg: float = 0.0,
     time_s: float = 0.0,
     wireframe: bool = False,
+    view: str = "face",
 ) -> None:
     """Render one frame into a file; see ``write_frame``.
 
-    ``wireframe`` draws the eyes' meshes as lines, which shows their tessellation.
+    ``wireframe`` draws the eyes' meshes as lines, which shows their tessellation. ``view`` "crowd"
+    shows the other characters in rows (``renderer.group``) instead of the main one.
     """
     gl = create_context()
     try:
+        is_group = view == "crowd"
         write_frame(
             path,
-            FrameRenderer(gl, spec, wireframe=wireframe),
+            GroupRenderer(gl, spec) if is_group else FrameRenderer(gl, spec, wireframe=wireframe),
             azimuth_deg=azimuth_deg,
             elevation_deg=elevation_deg,
             time_s=time_s,
@@ -43,7 +50,7 @@ def write_still(
 
 def write_frame(
     path: Path,
-    renderer: FrameRenderer,
+    renderer: FrameRenderer | GroupRenderer,
     *,
     azimuth_deg: float = 0.0,
     elevation_deg: float = 0.0,

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from renderer.clip import ClipSpec
 from renderer.context import create_context, identify
 from renderer.frame import Frame, FrameRenderer
-from renderer.scene import Scene
+from renderer.group import GroupRenderer
+from renderer.scene import Scene, scene_key
 
 
 class Studio:
@@ -27,6 +28,12 @@ class Studio:
         renderer = FrameRenderer(self.gl, spec, scene=self._scene, wireframe=wireframe, eyes=eyes)
         self._scene = renderer.scene
         return renderer
+
+    def group_renderer(self, spec: ClipSpec) -> GroupRenderer:
+        """Return a renderer of the group view, in the last clip's surroundings where they fit."""
+        is_same = self._scene is not None and self._scene.key[0] == scene_key(spec)[0]
+        around = self._scene.surroundings if self._scene and is_same else None
+        return GroupRenderer(self.gl, spec, surroundings=around)
 
     def frames(self, spec: ClipSpec, numbers: Sequence[int] | None = None) -> Iterator[Frame]:
         """Yield the clip's frames, or those with these numbers, in order."""

@@ -41,14 +41,15 @@ class Crowd:
         static_cube: StaticCube | None = None,
         stage: Sequence[Member] | None = None,
     ) -> None:
-        """``stage`` says who stands where instead of ``spec.crowd``.
+        """``stage`` says who stands where instead of ``spec.crowd``; its people have real eyes.
 
         ``static_cube`` gives the surroundings at a size; without it all eyes are painted.
         """
         self.gl = gl
         self.light = light
         cast = members(spec.crowd) if stage is None else stage
-        has_eyes = static_cube is not None and len(cast) > PAINTED_CROWD
+        is_large = stage is not None or len(cast) > PAINTED_CROWD
+        has_eyes = static_cube is not None and is_large
         self.figures = build_figures(cast, is_awake=has_eyes)
         self.eyes_drawn: list[DrawnEye] = []  # in the last picture
         self._troupe = Troupe(self.figures)
