@@ -13,18 +13,21 @@ import numpy as np
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.head.lid_pose import STRAIGHT, LidPose
-from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim_curves
+from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim_curves, soft_max
 from renderer.head.lid_shell import on_globe
 
-CARUNCLE_END_MM: Final = -8.0  # towards the pupil: under the globe's surface from here on
-COVER_MM: Final = (-8.6, -11.4)  # the conjunctiva fades in over the sclera between these
-PLICA_MM: Final = -12.1  # the fold, a crescent open towards the pupil
-BUMP_MM: Final = (-14.3, 1.45)  # the caruncle's middle and half width along x
-MEMBRANE_START_MM: Final = 9.6
+CARUNCLE_END_MM: Final = -7.5  # towards the pupil: under the globe's surface from here on
+COVER_MM: Final = (-8.2, -9.2)  # the conjunctiva fades in over the sclera between these
+BRIDGE_MM: Final = 3.6  # how softly it leaves the globe: a valley would show the globe's outline
+PLICA_MM: Final = -11.35  # free edge of the fold, a crescent that embraces the cornea
+PLICA_EDGE_MM: Final = 0.55  # from its foot on the globe to its height ...
+PLICA_WIDTH_MM: Final = 2.1  # ... and on from there, down to the caruncle's foot
+BUMP_MM: Final = (-14.35, 1.45)  # the caruncle's middle and half width along x
+MEMBRANE_START_MM: Final = 8.6
 DRAWN: Final = (0.28, 0.12)  # share of the cornea's way to nose and temple that drags the fold
 TUCKED_MM: Final = 0.3  # of the sheets' edges, below the lids
 FULL_OPENING_MM: Final = 3.0  # of the lids, at which the caruncle stands out fully
-CARUNCLE_GRID: Final = (52, 28)  # points from canthus inwards, and from lid to lid
+CARUNCLE_GRID: Final = (76, 36)  # points from canthus inwards, and from lid to lid
 MEMBRANE_GRID: Final = (22, 16)
 
 
@@ -32,13 +35,14 @@ MEMBRANE_GRID: Final = (22, 16)
 class Corner:
     """A sheet of conjunctiva: points (n, 3) in mm, quads (m, 4), and per point 0 to 1
 
-    ``pink`` how much it is caruncle, ``sclera`` how much sclera shines through, ``cover`` how
-    much of the globe it hides.
+    ``pink`` how much it is caruncle, ``grain`` how rough it is, ``sclera`` how much sclera shines
+    through, ``cover`` how much of the globe it hides.
     """
 
     points_mm: Floats
     quads: Indices
     pink: Floats
+    grain: Floats
     sclera: Floats
     cover: Floats
 
@@ -49,27 +53,45 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     sheet = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM + drawn, pose, grid=CARUNCLE_GRID)
     b = sheet.upwards
     x, y, z = (sheet.points_mm[..., axis] for axis in range(3))
+    between = np.sin(np.pi * b)
     room = _ease(sheet.opening_mm / FULL_OPENING_MM)
     crescent = x - drawn + 0.9 * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
     middle = BUMP_MM[0] + 0.3 * drawn
     hump = room * np.exp(-(((x - middle) / BUMP_MM[1]) ** 2) - ((b - 0.47) / 0.30) ** 2)
-    plica = room * np.exp(-(((crescent - PLICA_MM) / 0.42) ** 2)) * np.sin(np.pi * b)
-    sag = 0.75 * np.sin(np.pi * b) * _ease((x - MEDIAL_MM[0]) / 1.5)
-    height = z - sag + 1.25 * hump + 0.45 * plica + _lumps(x, y) * np.sqrt(hump)
+    fold, behind_edge = _plica(x - drawn, b)
+    sag = 0.75 * between * _ease((x - MEDIAL_MM[0]) / 1.5)
     globe = on_globe(sheet.points_mm[..., :2], pose)
-    near = _ease((crescent + 12.6) / 2.0)
-    under = _ease((crescent + 8.8) / 0.6)
-    over = np.minimum(0.09 + 0.25 * plica, 0.05 + 0.2 * sheet.opening_mm)
-    sheet.points_mm[..., 2] = height * (1 - near) + (globe + over - 0.6 * under) * near
+    off = _ease((-7.9 - crescent) / 1.4)
+    under = _ease((crescent + 8.3) / 0.6)
+    over = np.minimum(0.09, 0.05 + 0.2 * sheet.opening_mm)
+    bridge = BRIDGE_MM * room * between * off
+    base = soft_max(globe + over, z - sag, 0.05 + bridge) - 0.6 * under
+    lobes, granules = _lobes(x, y)
+    bumps = 1.05 * hump + 0.11 * lobes * np.sqrt(hump) + 0.5 * room * fold * between
+    sheet.points_mm[..., 2] = base + bumps
     cover = _ease((COVER_MM[0] - crescent) / (COVER_MM[0] - COVER_MM[1]))
     cover = np.maximum(cover, _beside_globe(sheet.points_mm))
+    white = _ease((crescent + 13.0) / 2.0) * (1 - 0.62 * behind_edge)
     return Corner(
         sheet.points_mm.reshape(-1, 3),
         _quads(CARUNCLE_GRID),
         np.clip(1.25 * hump, 0, 1).ravel(),
-        (0.95 * _ease((crescent + 12.7) / 2.4)).ravel(),
+        (room * np.clip(1.6 * hump + 0.35 * behind_edge, 0, 1)).ravel(),
+        np.clip(0.95 * white + 0.30 * granules * hump, 0, 1).ravel(),
         cover.ravel(),
     )
+
+
+def _plica(x: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Return the fold's height, 0 to 1, and 1 on and behind its free edge, 0 in front.
+
+    The edge looks towards the cornea; behind it the fold sinks slowly to the caruncle's foot.
+    """
+    way = PLICA_MM + 0.5 * (2 * b - 1) ** 2 - x  # from the edge towards the nose
+    rise = _ease(way / PLICA_EDGE_MM + 0.5)
+    redder = _ease(way / 1.6 + 0.6)
+    fall = _ease((way - 0.5 * PLICA_EDGE_MM) / PLICA_WIDTH_MM)
+    return rise * (1 - fall) - 0.35 * np.exp(-(((way - 2.0) / 0.45) ** 2)), redder
 
 
 def _drawn_mm(pose: LidPose) -> float:
@@ -83,11 +105,12 @@ def _beside_globe(points: Floats) -> Floats:
     return _ease((np.hypot(points[..., 0], points[..., 1]) - 10.95) / 0.5)
 
 
-def _lumps(x: Floats, y: Floats) -> Floats:
-    """Return the caruncle's glands in mm: lobes of a millimetre with finer grains on them."""
-    lobes = np.sin(5.1 * x + 2.3 * y + 0.4) * np.sin(4.7 * y - 2.9 * x)
-    grains = np.sin(11.3 * x - 4.1 * y) * np.sin(9.7 * y + 5.3 * x + 1.0)
-    return np.asarray(0.15 * lobes + 0.06 * grains)
+def _lobes(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Return the caruncle's lobes of a millimetre, about 0, and its pale granules, 0 to 1."""
+    u, v = x + 0.13 * np.sin(4.1 * y), y + 0.15 * np.sin(3.3 * x + 1.0)
+    lobes = np.sin(5.1 * u + 2.3 * v + 0.4) * np.sin(4.7 * v - 2.9 * u)
+    granules = np.sin(8.3 * u - 3.1 * v) * np.sin(7.7 * v + 4.3 * u + 1.0)
+    return np.asarray(lobes), np.clip(granules, 0.0, 1.0) ** 2
 
 
 def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
@@ -95,15 +118,17 @@ def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
     sheet = _sheet(LATERAL_MM[0], MEMBRANE_START_MM, pose, grid=MEMBRANE_GRID)
     a, b = sheet.inwards, sheet.upwards
     globe = on_globe(sheet.points_mm[..., :2], pose)
-    near, under = _ease(a / 0.75), _ease((a - 0.75) / 0.25)
-    hollow = sheet.points_mm[..., 2] - 0.35 * np.sin(np.pi * b) * _ease(sheet.opening_mm)
-    sheet.points_mm[..., 2] = hollow * (1 - near) + (globe + 0.05 - 0.5 * under) * near
+    under = _ease((a - 0.85) / 0.15)
+    between = np.sin(np.pi * b) * _ease(sheet.opening_mm)
+    hollow = sheet.points_mm[..., 2] - 0.35 * between
+    sheet.points_mm[..., 2] = soft_max(globe + 0.05, hollow, 0.05 + between) - 0.5 * under
     return Corner(
         sheet.points_mm.reshape(-1, 3),
         _quads(MEMBRANE_GRID)[:, ::-1],
         np.zeros(a.size),
+        np.zeros(a.size),
         (0.9 * _ease(a / 0.5)).ravel(),
-        np.maximum(1.0 - _ease(a / 0.85), _beside_globe(sheet.points_mm)).ravel(),
+        _ease((np.hypot(*np.moveaxis(sheet.points_mm[..., :2], -1, 0)) - 9.4) / 1.2).ravel(),
     )
 
 

@@ -47,6 +47,7 @@ class SkinPart:
     caruncle: Floats
     wet: Floats
     along_mm: Floats
+    grain: Floats | None = None  # of the eye's corners: how rough they are, 0 to 1
     sclera: Floats | float = 0.0  # 1 where the conjunctiva lies on the white of the eye
     sink_mm: Floats | float = 0.0  # below the surface, so that overlapping meshes do not fight
 
@@ -305,5 +306,6 @@ def _corners(eye: int, pose: LidPose) -> SkinPart:
         np.concatenate([inner.pink, outer.pink]),
         one,
         points[:, :2].copy(),
+        grain=np.concatenate([inner.grain, outer.grain]),
         sclera=np.concatenate([inner.sclera, outer.sclera]),
     )

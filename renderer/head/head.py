@@ -126,9 +126,12 @@ class Head:
         camera = np.asarray(camera_mm, dtype=float)
         # Conjunctiva fades into the sclera beneath, sample by sample: its solid part stands there
         # already, and the samples of an edge between the two belong to the one or the other.
+        skin = self._programs["skin"]
+        density = pixel_per_mm / float(np.linalg.norm(camera))
+        skin.set(**self._skin_maps.uniforms(density))  # others' textures took their units
         with blending(self.gl, by_sample=True):
             for veil in self._veils:
-                veil.draw(self._programs["skin"], clip, camera_mm=camera)
+                veil.draw(skin, clip, camera_mm=camera)
         with blending(self.gl):
             for mesh, _ in self._hair:
                 mesh.draw(program, clip, camera_mm=camera)

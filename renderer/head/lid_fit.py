@@ -15,6 +15,7 @@ import numpy as np
 from scipy.interpolate import RBFInterpolator
 
 from renderer.body.makehuman import Floats, Indices
+from renderer.head.lid_lap import lap_over
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim, rim_shares, smooth_step, soft_max
 from renderer.head.lid_skin import Columns, lower_skin, upper_skin
@@ -22,7 +23,7 @@ from renderer.head.lid_skin import Columns, lower_skin, upper_skin
 TUCK_MM: Final = 1.6  # from the inner edge back to the patch's innermost ring
 OFF_GLOBE_TUCK_MM: Final = 2.0  # more of it at the canthi, where nothing is close behind
 MARGIN_MM: Final = 1.75  # lid thickness at the rim
-MARGIN_TURN: Final = (0.5, 0.1)  # of the margin against the globe's normal, lower and upper lid
+MARGIN_TURN: Final = (0.5, 0.8)  # of the margin against the globe's normal, lower and upper lid
 MEETING_MM: Final = 3.5  # lids that are nearer to each other turn their margins face to face
 OUTLINE_MM: Final = (25.5, 22.5, 17.5, 19.5)  # patch ends: temple, nose, up, down of (0, 0)
 ENDING: Final = (0.0, 0.9, 1.8, 2.7)  # of the last rings, in mm beyond the outline
@@ -82,9 +83,10 @@ def fit_lids(socket: Socket, pose: LidPose = STRAIGHT) -> LidPatch:
     controls, rim_control = _control_net(socket, pose)
     basis, places = _spline_basis(controls.shape[1], ALONG)
     points = np.einsum("wk,tkc->twc", basis, controls)
+    rim_row = int(np.argmin(np.abs(places - rim_control)))
+    points = lap_over(points, rim_row)
     steps = np.linalg.norm(np.diff(points, axis=1), axis=2)
     across = np.concatenate([np.zeros((AROUND, 1)), np.cumsum(steps, axis=1)], axis=1)
-    rim_row = int(np.argmin(np.abs(places - rim_control)))
     return LidPatch(
         points, upper_share(), across - across[:, EDGE_ROW : EDGE_ROW + 1], rim_row, pose
     )
@@ -182,7 +184,7 @@ def _margin_direction(inner: Floats, radial: Floats, *, outward: Floats, canthus
     """Return where the margins face, (around, 3): forwards, the lower up, the upper down."""
     is_upper, one = upper_share(), np.ones(AROUND)
     apart = smooth_step(_opening(inner) / MEETING_MM)
-    # The upper lid's margin looks down: from the front it hides behind the lid's outer edge.
+    # The upper lid's margin looks down and a little forwards: half a millimetre of it shows.
     rise = MARGIN_TURN[0] * (1 - is_upper) + MARGIN_TURN[1] * is_upper
     rise = 1.0 + (rise - 1.0) * apart
     turned = radial * np.column_stack([0.65 * one, rise, one])

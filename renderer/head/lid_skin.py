@@ -99,10 +99,10 @@ def upper_skin(columns: Columns) -> list[Floats]:
         rows.append(_upper_ring(columns, platform * share, height))
     # The skin dives into the crease, comes forwards as a lip over it, and rolls over.
     for beyond, sink, pull in (
-        (0.0, 0.40, 0.0),
-        (0.25, 0.15, 0.35),
-        (0.8, 0.0, 0.35),
-        (1.7, 0, 0.1),
+        (0.0, 0.85, -0.1),
+        (0.25, 0.35, 0.55),
+        (0.8, -0.1, 0.75),
+        (1.7, 0.0, 0.25),
     ):
         ring = _upper_ring(columns, platform + beyond, height)
         ring[:, 2] -= sink * fold

@@ -27,6 +27,7 @@ BOUNCE_ALBEDO: Final = (0.30, 0.20, 0.155)  # what the covered directions send: 
 # Around the eyes they send more: nose and cheek catch over twice as much sun as typical light has,
 # and light goes to and fro between them.
 SOCKET_BOUNCE: Final = (1.00, 0.91, 0.87)
+FOLD_COVERED: Final = (0.5, 0.85)  # from where on nothing but a fold's own walls covers
 SOCKET_MM: Final = (22.0, 9.0)  # half widths of that region, across and up
 
 
@@ -74,10 +75,13 @@ def light_skin(
 def _bounce(points_mm: Floats, covered: Floats) -> Floats:
     """Return the share (n, 3) of typical light that points get from covered directions (n,)."""
     bounce = covered[:, None] * BOUNCE_ALBEDO
+    # In a fold what covers is skin in the same shade: the crease stays dark.
+    deep = np.clip((covered - FOLD_COVERED[0]) / (FOLD_COVERED[1] - FOLD_COVERED[0]), 0.0, 1.0)
+    sunlit = covered * (1.0 - deep)
     for eye in (0, 1):
         x, y, z = (points_mm - eye_centre_mm(eye)).T
         near = np.exp(-((x / SOCKET_MM[0]) ** 2) - ((y - 9.0) / SOCKET_MM[1]) ** 2) * (z > -5.0)
-        bounce += (near * covered)[:, None] * (np.array(SOCKET_BOUNCE) - BOUNCE_ALBEDO)
+        bounce += (near * sunlit)[:, None] * (np.array(SOCKET_BOUNCE) - BOUNCE_ALBEDO)
     return bounce
 
 

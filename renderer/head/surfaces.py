@@ -17,10 +17,12 @@ from renderer.head.face_mesh import FaceMesh, SkinPart, face_mesh, triangles_of
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import hair_cap
 from renderer.head.lid_fit import ALONG, AROUND, grid_quads
-from renderer.head.lid_layout import lid_coordinates
+from renderer.head.lid_layout import ACROSS_MM, AROUND_MM, lid_coordinates
 from renderer.head.skin import SCALP, detail_coordinates, paint
 
 SPARSE_ROW: Final = 29  # of the lid patches: from here on, every other column will do
+GRAIN_SCALE: Final = 2.2  # the caruncle's granules are so much finer than the cheek's polygons
+VESSELS_AT: Final = (-0.7, 0.22)  # in the lids' map, a turn early: on the upper lid
 AROUND_COLUMN: Final = 11  # of the rows: the way around the fissure in the lids' map
 
 
@@ -69,7 +71,7 @@ def skin_surfaces(gl: moderngl.Context, face: FaceMesh) -> dict[str, Surface]:
             part.normals,
             part.triangles,
             gloss,
-            part.wet,
+            part.wet if part.grain is None else 1.0 - 0.5 * part.grain,
             CellMesh(
                 gl,
                 rows,
@@ -115,6 +117,11 @@ def cap_surface(gl: moderngl.Context) -> Surface:
 def _skin_rows(part: SkinPart, albedo: Floats, eye: int | None) -> Floats:
     detail = detail_coordinates(part.points_mm)
     lid = np.zeros((len(detail), 2)) if eye is None else lid_coordinates(part, eye)
+    if part.grain is not None:
+        # The shader knows conjunctiva by a place before the lids' map; its vessels are the lids'.
+        detail = detail * GRAIN_SCALE
+        away = part.points_mm[:, :2] - part.points_mm[:, :2].mean(axis=0)
+        lid = VESSELS_AT + away / [AROUND_MM, 2 * ACROSS_MM]
     sunk = part.points_mm - part.normals * np.reshape(part.sink_mm, (-1, 1))
     return np.column_stack([sunk, part.normals, albedo, detail, lid, part.lid])
 

@@ -29,7 +29,16 @@ const vec3 CAVITY = vec3(0.22, 0.42, 0.48);  // light lost at the bottom of furr
 const vec3 BLOOD = vec3(0.10, 0.46, 0.42);   // absorption per unit of the maps
 const vec3 MELANIN = vec3(0.34, 0.50, 0.62);
 const float SKYLINE = 0.55;                  // how much more light a facet gets that tilts upwards
+const float VESSELS = 1.5;                   // of conjunctiva, against the lids'
+const float WET_FOLLOWS = 0.7;               // how much of the relief a film of tears shows
 const float FACET_M2 = 0.045, OILY_M2 = 0.0085;  // Beckmann's m^2 of the two lobes, relief apart
+
+// Tears fill the finest furrows; over granules their film is broken and mirrors in many places.
+float wet_lobe(vec3 n, vec3 h, float grain) {
+    float n_dot_h = dot(n, h);
+    float film = min(gaussian_lobe(n_dot_h, 0.13), 300.0);
+    return mix(film, 0.30 * min(film, 60.0) + 0.7 * gaussian_lobe(n_dot_h, 0.36), grain);
+}
 
 void main() {
     // Samples at a silhouette extrapolate what the vertices say: keep shares within 0 to 1.
@@ -42,15 +51,20 @@ void main() {
     vec4 face = textureLod(u_relief, v_detail.xy, 0.0);
     vec4 crepe = textureLod(u_lids, v_detail.zw, 0.0);
     vec4 colour = textureLod(u_colour, v_detail.xy * u_colour_scale, 0.0) - 0.5;
-    vec2 share = clamp(v_lid.zw, 0.0, 1.0) * vec2(1.0 + 1.6 * colour.a, 1.0);
-    float shown = clamp(v_lid.y, 0.0, 1.0) * dry;
+    vec2 share = clamp(v_lid.zw, 0.0, 2.0);
+    float thin = share.y / max(share.x + share.y, 1e-3), grain = min(share.x, 1.0) * (1.0 - dry);
+    float conjunctiva = VESSELS * clamp(-v_lid.w, 0.0, 1.0) * (1.0 - grain);
+    share.x *= 1.0 + 1.6 * colour.a;
+    float shown = clamp(v_lid.y, 0.0, 1.0);
     vec2 slope = ((face.xy - 0.5) * share.x + (crepe.xy - 0.5) * share.y) * (2.0 * u_slope_range * shown);
-    float open = 1.0 - shown * (1.0 - mix(face.z, crepe.z, lid));
+    float rugged = shown * min(share.x + share.y, 1.0) * (1.0 - 0.4 * grain);
+    float open = 1.0 - rugged * (1.0 - mix(face.z, crepe.z, thin));
     vec2 lost = u_lost_variance + (1.0 - shown * shown) * 0.03;
-    float rough = 2.0 * mix(lost.x, lost.y, lid) * dry;  // Beckmann: m^2 is twice the variance
+    float rough = 2.0 * mix(lost.x, lost.y, thin) * dry;  // Beckmann: m^2 is twice the variance
 
-    float blood = colour.r + (crepe.a - 0.5) * lid, melanin = colour.g + 0.6 * shown * (face.a - 0.5);
-    vec3 albedo = v_albedo * (1.0 - dry * (blood * BLOOD + melanin * MELANIN));
+    float blood = colour.r * (1.0 + 2.0 * grain) + (crepe.a - 0.5) * (thin + conjunctiva);
+    float melanin = dry * (colour.g + 0.6 * shown * (face.a - 0.5));
+    vec3 albedo = v_albedo * (1.0 - blood * BLOOD - melanin * MELANIN);
     albedo *= 1.0 - CAVITY * (1.0 - open);
 
     vec3 n_detail = normalize(n - slope.x * t - slope.y * b);
@@ -66,7 +80,7 @@ void main() {
     float lobes = (0.70 / PI) * exp2(2.885390 * (n_dot_h - 1.0) / facet_m2) / facet_m2
         + (0.50 / PI) * oil * exp2(2.885390 * (n_dot_h - 1.0) / oily_m2) / oily_m2;
     lobes *= open * open;
-    if (dry < 0.99) lobes += (1.0 - dry) * min(gaussian_lobe(dot(n, h), 0.13), 300.0);
+    if (dry < 0.99) lobes += (1.0 - dry) * wet_lobe(normalize(mix(n, n_detail, WET_FOLLOWS)), h, grain);
     vec3 mirrored = u_sun_irradiance * (max(v_surface.y, 0.0) * cosine * lobes);
     vec3 sheen = v_sheen * (open * max(1.0 + 2.0 * upwards, 0.0));
     // Clamped: at edges of triangles varyings are extrapolated to the pixel's middle.

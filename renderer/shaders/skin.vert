@@ -8,8 +8,8 @@ in vec3 in_position;
 in vec3 in_normal;
 in vec3 in_albedo;
 in vec3 in_diffuse;   // radiance that a white skin would send back, scattering included
-in vec4 in_surface;   // gloss, ambient visibility, sun visibility, wetness
-in vec4 in_detail;    // pore tile's coordinates, lid's coordinates in mm
+in vec4 in_surface;   // gloss, ambient visibility, sun visibility, wetness (conjunctiva: 1 - grain / 2)
+in vec4 in_detail;    // pore tile's coordinates, lid's coordinates, on conjunctiva below 0
 in float in_lid;      // 1 on the lids' crepe; where tears stand, how much is covered
 
 uniform mat4 u_view_matrix;
@@ -24,10 +24,12 @@ out vec3 v_diffuse;
 out vec3 v_sheen;     // mirrored sky
 out vec4 v_surface;   // gloss, strength of the sun's mirror image, sun visibility, wetness
 out vec4 v_detail;
-out vec4 v_lid;       // in_lid; how much of the relief shows; shares of face and lid in it
+out vec4 v_lid;       // in_lid; how much of the relief shows; shares of face and lid in it, or
+                      // of granules and -1 on conjunctiva
 
 const float SKIN_F0 = 0.028;
 const float TEAR_F0 = 0.021;
+const float GRAIN = 1.6;      // how much steeper the caruncle's granules are than the cheek's relief
 
 void main() {
     float gloss = in_surface.x, ambient = in_surface.y, sun = in_surface.z, wet = in_surface.w;
@@ -51,5 +53,9 @@ void main() {
     // variances add up to one's (Heitz and Neyret 2018), or smooth skin would lie between them.
     v_lid = vec4(in_lid, mix(0.3, 1.0, smoothstep(0.05, 0.4, dot(n, v))),
         vec2(1.0 - in_lid, in_lid) * inversesqrt(1.0 - 2.0 * in_lid * (1.0 - in_lid)));
+    if (in_detail.z < 0.0) {
+        v_lid.zw = vec2(GRAIN * 2.0 * (1.0 - wet), -1.0);
+        v_surface.w = 1.0;
+    }
     gl_Position = u_projection * u_view_matrix * vec4(in_position, 1.0);
 }

@@ -7,9 +7,10 @@ import pytest
 
 from renderer.eye.lids import LidRims
 from renderer.head import lid_rims
-from renderer.head.caruncle import caruncle, outer_membrane
+from renderer.head.caruncle import CARUNCLE_GRID, caruncle, outer_membrane
 from renderer.head.face_mesh import face_mesh, to_patch, to_world
 from renderer.head.lid_fit import EDGE_ROW, fit_lids
+from renderer.head.lid_lap import LAP_COLUMN
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_shell import height_over_globe
 
@@ -52,11 +53,11 @@ def test_the_fissure_is_an_almond() -> None:
     assert np.interp(-5.9, lower[:, 0], lower[:, 1]) < -3.0
 
 
-def test_the_upper_margin_hides_and_the_lower_shows_a_thin_edge_from_the_front() -> None:
+def test_both_lids_show_a_thin_edge_from_the_front() -> None:
     patch = face_mesh().lids[1]
     middle = np.abs(patch.points_mm[:, EDGE_ROW, 0]) < 5.0
     rise = patch.points_mm[:, patch.rim_row, 1] - patch.points_mm[:, EDGE_ROW, 1]
-    assert np.abs(rise[middle & (patch.is_upper > 0.9)]).max() < 0.6
+    assert 0.3 < rise[middle & (patch.is_upper > 0.9)].mean() < 1.1
     assert -1.1 < rise[middle & (patch.is_upper < 0.1)].mean() < -0.3
 
 
@@ -125,8 +126,36 @@ def test_conjunctiva_fades_into_the_sclera_but_hides_what_lies_beside_the_globe(
     for corner in (caruncle(), outer_membrane()):
         r = np.hypot(corner.points_mm[:, 0], corner.points_mm[:, 1])
         assert corner.cover[r > 11.5].min() == 1.0
-        assert corner.cover[r < 9.0].max(initial=0.0) < 0.1
+        assert corner.cover[r < 8.3].max(initial=0.0) < 0.1
         assert np.count_nonzero((corner.cover > 0.1) & (corner.cover < 0.9)) > 30
+
+
+@pytest.mark.parametrize("pose", [STRAIGHT, LidPose(20.0), LidPose(-20.0)])
+def test_from_the_temple_no_valley_shows_the_globes_outline(pose: LidPose) -> None:
+    """From 30 degrees the covered conjunctiva climbs steadily from the globe to the caruncle."""
+    corner = caruncle(pose)
+    rows, columns = CARUNCLE_GRID
+    towards = np.array([np.cos(np.pi / 6), 0.0, -np.sin(np.pi / 6)])  # to the right as it is seen
+    seen = (corner.points_mm @ towards).reshape(rows, columns)[:, columns // 2]
+    opaque = corner.cover.reshape(rows, columns)[:, columns // 2] > 0.95
+    assert np.count_nonzero(opaque) > 50
+    assert np.diff(seen[opaque]).min() > -0.02
+
+
+def test_the_plica_is_a_fold_between_globe_and_caruncle() -> None:
+    rows, columns = CARUNCLE_GRID
+    x, _, z = caruncle().points_mm.reshape(rows, columns, 3)[:, columns // 2].T
+    foot, crest, behind = np.interp((-11.1, -11.6, -12.8), x, z)
+    assert crest > foot + 0.1
+    assert crest > behind + 0.02
+
+
+def test_the_upper_lid_laps_over_the_lower_at_the_outer_corner() -> None:
+    patch = face_mesh().lids[1]
+    places = patch.points_mm[:, patch.rim_row + 6]
+    upper, lower = places[1], places[LAP_COLUMN - 2]
+    assert upper[2] > lower[2] + 0.25
+    assert upper[1] > lower[1]
 
 
 def test_patch_and_world_space_are_inverse() -> None:
