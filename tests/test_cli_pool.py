@@ -10,9 +10,12 @@ import tempfile
 import time
 from concurrent.futures import BrokenExecutor, CancelledError
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from study.cli import main
+from study.commands import render
 from study.commands.pool import Pool
 
 ROOT = Path(__file__).parent.parent
@@ -126,3 +129,27 @@ def test_no_process_outlives_its_keeper(tmp_path: Path, number: signal.Signals) 
     if number == signal.SIGINT:
         assert said.count("Traceback") == 1  # the keeper's own: no process has one
         assert said.rstrip().endswith("KeyboardInterrupt")
+
+
+@pytest.mark.parametrize(("workers", "threads"), [(2, 4), (3, 2), (8, 1), (20, 1)])
+def test_software_rendering_shares_the_cores(
+    workers: int, threads: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _pid: set(range(8)))
+    assert render.fair_share(workers) == threads
+
+
+def test_clips_of_different_gl_renderers_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    drawn = [
+        SimpleNamespace(file_bytes=500_000, gl_renderer=name, gl_version="4.6")
+        for name in ("llvmpipe", "NVIDIA H100", "llvmpipe")
+    ]
+    monkeypatch.setattr(render, "_render_here", lambda *_: drawn)
+    assert main(["render", "--out", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        f"3 clips, 1.5 MB, in {tmp_path}",
+        "Drawn by different GL renderers, which may differ in the last bit: "
+        "NVIDIA H100, 4.6; llvmpipe, 4.6",
+    ]
