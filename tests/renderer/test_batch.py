@@ -18,6 +18,7 @@ import pytest
 from renderer.batch import render_clip, render_clips
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.lod_policy import default_policy
 from renderer.manifest import MANIFEST_NAME, read_manifest
 
 SPEC = ClipSpec(
@@ -147,3 +148,24 @@ def _gone_pid() -> int:
     process = subprocess.Popen([sys.executable, "-c", ""])
     process.wait()
     return process.pid
+
+
+def test_the_manifest_says_which_lod_each_eye_had(tmp_path: Path) -> None:
+    policy = default_policy()
+    spec = replace(
+        SPEC,
+        left=policy.finest,
+        right=policy.finest,
+        motion="approach",
+        approach_end_px=100.0,
+        left_switching="blended",
+        lod_policy=policy,
+    )
+    record = render_clip(spec, tmp_path, source=Pattern())
+    assert len(record.lod_places) == spec.frame_count
+    assert {row[1] for row in record.lod_places} == {len(policy.steps) - 1.0}
+    assert [row[0] for row in record.iris_px] == sorted(row[0] for row in record.iris_px)
+    again = read_manifest(tmp_path).clips[spec.clip_id]
+    assert again.lod_places == record.lod_places
+    assert again.clip_spec == spec
+    assert render_clip(SPEC, tmp_path, source=Pattern()).lod_places == []

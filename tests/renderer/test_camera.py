@@ -7,7 +7,16 @@ import math
 import numpy as np
 import pytest
 
-from renderer.camera import IRIS_PX, LIMBUS_Z_MM, camera_radius_mm, eye_centre_mm, iris_px, views
+from renderer.camera import (
+    IRIS_PX,
+    LIMBUS_Z_MM,
+    camera_radius_mm,
+    cropped,
+    eye_centre_mm,
+    iris_px,
+    iris_px_of_frame,
+    views,
+)
 from renderer.clip import DISTANCES, ClipSpec
 from renderer.detail import Detail
 
@@ -76,3 +85,30 @@ def test_elsewhere_one_camera_turns_about_the_middle_between_the_eyes(distance: 
     assert bearing == pytest.approx(60.0)
     near_eye, far_eye = eye_centre_mm(1), eye_centre_mm(0)
     assert np.linalg.norm(view.position_mm - near_eye) < np.linalg.norm(view.position_mm - far_eye)
+
+
+def test_an_approach_has_one_camera_and_the_sizes_it_names() -> None:
+    spec = ClipSpec(
+        left=LOW,
+        right=LOW,
+        distance="macroscopic",
+        motion="approach",
+        approach_start_px=20.0,
+        approach_end_px=240.0,
+    )
+    for frame, size in ((0, 20.0), (spec.frame_count - 1, 240.0)):
+        assert iris_px_of_frame(spec, frame) == pytest.approx((size, size), rel=1e-5)
+        (view,) = views(spec, 0.0, distance_px=spec.distance_px(frame))
+        assert view.eyes == (0, 1)
+    assert iris_px(spec, 0.0)[0] == pytest.approx(240.0, rel=1e-5), "without a frame: its end"
+    both = [project(view, eye_centre_mm(eye))[0] for eye in (0, 1)]
+    assert both[0] > 0.5 * 2.6 * 240.0
+    assert both[1] < 1920 - 0.5 * 2.6 * 240.0
+
+
+def test_a_part_of_a_view_shows_the_same_at_the_same_size() -> None:
+    (view,) = views(ClipSpec(left=LOW, right=LOW, distance="near"), 20.0)
+    part = cropped(view, (300, 400, 600, 200))
+    assert part.rectangle == (0, 0, 600, 200)
+    for point in (eye_centre_mm(0), eye_centre_mm(0) + [3.0, -2.0, 11.0]):
+        assert project(part, point) == pytest.approx(project(view, point) - [300, 400], abs=1e-2)

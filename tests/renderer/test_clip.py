@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
+from renderer.lod_policy import default_policy
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
 
@@ -73,3 +75,56 @@ def test_all_faults_are_told_at_once() -> None:
     assert "choose one of macroscopic, near, medium, far" in message
     assert "width: 1921 is odd" in message
     assert "pupil_mm: 12 lies outside 1.5 to 8.0" in message
+
+
+def test_clips_that_neither_approach_nor_switch_keep_the_names_they_had() -> None:
+    assert ClipSpec(left=LOW, right=ULTRA).clip_id == "123a732dd9bed0c56b3b"
+    assert ClipSpec(left=LOW, right=ULTRA, approach_start_px=12.0).clip_id == "123a732dd9bed0c56b3b"
+
+
+def approach(**values: object) -> ClipSpec:
+    fields = {"motion": "approach", "approach_start_px": 12.0, "approach_end_px": 192.0}
+    return ClipSpec(**{"left": ULTRA, "right": ULTRA, **fields, **values})  # type: ignore[arg-type] # any field
+
+
+def test_an_approach_grows_by_the_same_factor_and_keeps_its_azimuth() -> None:
+    spec = approach(approach_azimuth_deg=20.0, duration_s=5 / 30)
+    sizes = [spec.distance_px(frame) for frame in range(spec.frame_count)]
+    assert sizes == pytest.approx([12.0, 24.0, 48.0, 96.0, 192.0])
+    assert {spec.azimuth_deg(frame) for frame in range(5)} == {20.0}
+    leftward = approach(approach_azimuth_deg=20.0, orbit_direction="leftward")
+    assert leftward.azimuth_deg(0) == -20.0
+    assert ClipSpec(left=LOW, right=LOW).distance_px(3) is None
+    assert approach(duration_s=0.03).distance_px(0) == 12.0
+
+
+def test_switching_and_policy_make_another_name_and_survive_json() -> None:
+    policy = default_policy()
+    switching = {"left": policy.finest, "right": policy.finest, "lod_policy": policy}
+    specs = [
+        approach(),
+        approach(**switching, left_switching="blended"),
+        approach(**switching, left_switching="instant"),
+        approach(**switching, left_switching="instant", right_switching="blended"),
+        approach(approach_end_px=100.0),
+    ]
+    assert len({spec.clip_id for spec in specs}) == len(specs)
+    for spec in specs:
+        assert ClipSpec.from_dict(json.loads(json.dumps(spec.to_dict()))) == spec
+    assert specs[3].swapped().left_switching == "blended"
+
+
+def test_an_eye_that_switches_needs_a_policy_that_ends_at_its_lod() -> None:
+    with pytest.raises(ValueError, match="left_switching: blended; an eye that switches needs a"):
+        approach(left_switching="blended")
+    with pytest.raises(ValueError, match="lod_policy: no eye switches; leave it out"):
+        approach(lod_policy=default_policy())
+    with pytest.raises(ValueError, match="right: an eye that switches ends at its policy's finest"):
+        approach(right=LOW, right_switching="instant", lod_policy=default_policy())
+
+
+def test_one_camera_shows_both_eyes_only_up_to_a_size() -> None:
+    with pytest.raises(ValueError, match="approach_end_px: 250 is too large; one camera shows"):
+        approach(approach_end_px=250.0)
+    with pytest.raises(ValueError, match="up to an iris of 137 pixels on 1080 lines"):
+        approach(width=1080, approach_end_px=140.0)
