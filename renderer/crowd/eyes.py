@@ -21,6 +21,7 @@ from renderer.crowd.gaze import CrowdGaze, iris_px
 from renderer.crowd.skeletons import Floats
 from renderer.crowd.sockets import Socket, sockets
 from renderer.detail import Detail
+from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.sunlight import rims_table
 from renderer.light import Light
 from renderer.lod_policy import default_policy
@@ -62,13 +63,13 @@ class CrowdEyes:
         self.gaze = CrowdGaze.of(figures, pairs)
         rows = {name: 2 * row for row, name in enumerate(fitted)}
         self._rims = _rims_texture(gl, [socket for pair in fitted.values() for socket in pair])
-        self._fixed = np.zeros((2 * len(figures), 8), dtype=np.float32)
+        self._facts = np.zeros((2 * len(figures), 8), dtype=np.float32)
         for number, (figure, pair) in enumerate(zip(figures, pairs, strict=True)):
             for eye, socket in enumerate(pair):
                 sky, sun = shares[number][socket.rows].mean(axis=0)
                 radius = self.gaze.radii_mm[2 * number + eye]
                 row = rows[figure.member.person.body] + eye
-                self._fixed[2 * number + eye, :5] = 1.0 - 2.0 * eye, radius, sun, sky, row
+                self._facts[2 * number + eye, :5] = 1.0 - 2.0 * eye, radius, sun, sky, row
         self._records = gl.buffer(reserve=MOST_EYES * 96)
 
     def choose(
@@ -81,7 +82,9 @@ class CrowdEyes:
         among: Sequence[int],
     ) -> list[DrawnEye]:
         """Return the eyes of the figures ``among`` that a view needs, with the LoD of each."""
-        self._placed = self.gaze.eye_to_world(bones)
+        self._placed, aside_deg = self.gaze.placed(bones)
+        # Lids stay where they are while the globe turns under them.
+        self._facts[:, 5:7] = GLOBE_RADIUS_MM * np.sin(np.radians(aside_deg))
         sizes = iris_px(self._placed, view_matrix=view_matrix, projection=projection, lines=lines)
         policy = default_policy()
         found = []
@@ -110,7 +113,7 @@ class CrowdEyes:
         rows = [2 * eye.figure + eye.eye for eye in ordered]
         records = np.empty((len(rows), 24), dtype=np.float32)
         records[:, :16] = np.swapaxes(self._placed[rows], 1, 2).reshape(-1, 16)
-        records[:, 16:] = self._fixed[rows]
+        records[:, 16:] = self._facts[rows]
         self._records.write(records.tobytes())
         self._records.bind_to_uniform_block(_BINDING)
         values: dict[str, Any] = {

@@ -45,26 +45,32 @@ class CrowdGaze:
             targets_mm=np.repeat([f.member.looks_at or nowhere for f in figures], 2, axis=0),
         )
 
-    def eye_to_world(self, bones: Floats) -> Floats:
-        """Return (e, 4, 4), without scale, for everybody's bones (f, b, 4, 4)."""
+    def placed(self, bones: Floats) -> tuple[Floats, Floats]:
+        """Place the eyes for everybody's bones (f, b, 4, 4).
+
+        Returns eye to world (e, 4, 4) without scale, and yaw and pitch (e, 2) in degrees of each
+        eye in its head, to the viewer's right and up.
+        """
         heads = bones[self.figure, HEAD]
         turn = heads[:, :3, :3] / self.scale[:, None, None]
         centre = np.einsum("eij,ej->ei", heads[:, :3, :3], self.centres_mm) + heads[:, :3, 3]
-        turn = turn @ self._aside(turn, centre)
+        aside_deg = self._aside(turn, centre)
+        turn = turn @ turns_about([0.0, 1.0, 0.0], aside_deg[:, 0])
+        turn = turn @ turns_about([1.0, 0.0, 0.0], -aside_deg[:, 1])
         found = np.zeros((len(turn), 4, 4))
         found[:, :3, :3], found[:, 3, 3] = turn, 1.0
         # Our globe lies as far forwards in the wider socket as its front does.
         found[:, :3, 3] = centre + turn[:, :, 2] * (self.radii_mm - GLOBE_RADIUS_MM)[:, None]
-        return found
+        return found, aside_deg
 
     def _aside(self, turn: Floats, centre: Floats) -> Floats:
-        """Return the turns (e, 3, 3) in the head that bring the gaze to its target, if it can."""
+        """Return yaw and pitch (e, 2) in the head that bring the gaze to its target, if it can."""
         local = np.einsum("eji,ej->ei", turn, self.targets_mm - centre)
         local = np.where(np.isnan(local), [0.0, 0.0, 1.0], local)
         x, y, z = local.T
         yaw = np.clip(np.degrees(np.arctan2(x, z)), -YAW_DEG, YAW_DEG)
         pitch = np.clip(np.degrees(np.arctan2(y, np.hypot(x, z))), -PITCH_DEG, PITCH_DEG)
-        return turns_about([0.0, 1.0, 0.0], yaw) @ turns_about([1.0, 0.0, 0.0], -pitch)
+        return np.stack([yaw, pitch], axis=1)
 
 
 def iris_px(

@@ -24,8 +24,10 @@ void place_eye() {
 }
 
 vec4 rims_at(float x_mm) {
-    float row = (u_crowd_eyes[v_eye].lids.x + 0.5) / float(textureSize(u_lid_rims, 0).y);
-    return textureLod(u_lid_rims, vec2(0.5 + 0.5 * x_mm / RIM_EDGE_MM, row), 0.0);
+    vec4 lids = u_crowd_eyes[v_eye].lids;
+    float row = (lids.x + 0.5) / float(textureSize(u_lid_rims, 0).y);
+    vec4 rims = textureLod(u_lid_rims, vec2(0.5 + 0.5 * (x_mm + lids.y) / RIM_EDGE_MM, row), 0.0);
+    return rims - vec4(lids.zz, 0.0, 0.0);
 }
 
 vec2 past_lids_and_lashes(vec3 p_eye, vec3 d_eye, float softness_mm);
