@@ -45,6 +45,7 @@ def render_on(
     *,
     progress: Callable[[int], None] = lambda _done: None,
     say: Callable[[str], None] = lambda _line: None,
+    with_flip: bool = True,
 ) -> list[ClipRecord]:
     """Render the clips that the folder does not hold yet; return every clip's record.
 
@@ -58,7 +59,7 @@ def render_on(
     kept = {name: manifest.current(name, folder) for name in wanted}
     records = {name: record for name, record in kept.items() if record is not None}
     progress(len(records))
-    batch = _Batch(executor, folder, records, progress, say)
+    batch = _Batch(executor, folder, records, progress, say, with_flip=with_flip)
     batch.run([spec for name, spec in wanted.items() if name not in records])
     return [records[spec.clip_id] for spec in specs]
 
@@ -73,12 +74,15 @@ class _Batch:
         records: dict[str, ClipRecord],
         progress: Callable[[int], None],
         say: Callable[[str], None],
+        *,
+        with_flip: bool,
     ) -> None:
         self._executor = executor
         self._folder = folder
         self._records = records
         self._progress = progress
         self._say = say
+        self._with_flip = with_flip
         self._out: dict[Future[dict[str, Any]], ClipSpec] = {}
         self._attempts: Counter[ClipSpec] = Counter()
         self._failures: list[tuple[ClipSpec, Exception]] = []
@@ -101,7 +105,11 @@ class _Batch:
     def _order(self, spec: ClipSpec, *, with_files: bool = False) -> None:
         contents = {name: _read(spec, name) for name in PATHS if with_files and getattr(spec, name)}
         future = self._executor.submit(
-            fill_order, spec.to_dict(), code_version(), contents=contents
+            fill_order,
+            spec.to_dict(),
+            code_version(),
+            contents=contents,
+            with_flip=self._with_flip,
         )
         self._out[future] = spec
 

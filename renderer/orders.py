@@ -32,14 +32,19 @@ class VersionMismatchError(RuntimeError):
 
 
 def fill_order(
-    spec: Mapping[str, Any], version: str, *, contents: Mapping[str, bytes]
+    spec: Mapping[str, Any],
+    version: str,
+    *,
+    contents: Mapping[str, bytes],
+    with_flip: bool = True,
 ) -> dict[str, Any]:
     """Render one clip in this process; return its ``record`` and the file's bytes as ``data``.
 
     ``spec`` is ``ClipSpec.to_dict``'s, ``version`` the asker's ``code_version``. ``contents`` holds
     files that the spec names by path, under the spec's name of the path. One that is neither there
     nor on this machine is asked for: the reply is then ``{"wanted": [name, ...]}`` and nothing is
-    rendered. Raises VersionMismatchError; every error carries this machine's name as a note.
+    rendered. ``with_flip`` is ``renderer.making.make_clip``'s. Raises VersionMismatchError; every
+    error carries this machine's name as a note.
     """
     try:
         _check_version(version)
@@ -47,7 +52,7 @@ def fill_order(
         if missing:
             return {WANTED: missing}
         # A GL context belongs to the thread that opened it; a worker may have several threads.
-        return _gl_thread().submit(_make, ClipSpec.from_dict(local)).result()
+        return _gl_thread().submit(_make, ClipSpec.from_dict(local), with_flip).result()
     except Exception as error:
         error.add_note(f"on {socket.gethostname()}")
         raise
@@ -94,12 +99,12 @@ def _holds(path: Path, sha256: str) -> bool:
         return False
 
 
-def _make(spec: ClipSpec) -> dict[str, Any]:
+def _make(spec: ClipSpec, with_flip: bool) -> dict[str, Any]:
     from renderer.making import make_clip
 
     with tempfile.TemporaryDirectory(prefix="ocularist-") as folder:
         path = Path(folder) / "clip.mp4"
-        record = make_clip(spec, path, source=_studio())
+        record = make_clip(spec, path, source=_studio(), with_flip=with_flip)
         return {"record": asdict(record), "data": path.read_bytes()}
 
 

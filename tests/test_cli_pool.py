@@ -143,7 +143,7 @@ def test_clips_of_different_gl_renderers_are_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     drawn = [
-        SimpleNamespace(file_bytes=500_000, gl_renderer=name, gl_version="4.6")
+        SimpleNamespace(file_bytes=500_000, gl_renderer=name, gl_version="4.6", missed=[])
         for name in ("llvmpipe", "NVIDIA H100", "llvmpipe")
     ]
     monkeypatch.setattr(render, "_render_here", lambda *_: drawn)

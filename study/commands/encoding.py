@@ -30,16 +30,13 @@ def add_encoding(parser: argparse.ArgumentParser) -> None:
 
 
 def encoding_choices(options: argparse.Namespace) -> dict[str, bool]:
-    """Return what this process's batch is asked for beyond the clips.
+    """Return what a batch is asked for beyond the clips.
 
     Raises CommandError where another process is to render: masters do not travel.
     """
     elsewhere = "--scheduler" if options.scheduler else "--workers" if options.workers > 1 else ""
-    asked = [f"--{name.replace('_', '-')}" for name in ("master", "no_flip") if vars(options)[name]]
-    if elsewhere and asked:
-        raise CommandError(
-            f"{' and '.join(asked)}: only where this process renders; leave out {elsewhere}"
-        )
+    if elsewhere and options.master:
+        raise CommandError(f"--master: only where this process renders; leave out {elsewhere}")
     return {"with_master": options.master, "with_flip": not options.no_flip}
 
 

@@ -91,7 +91,14 @@ def run(options: argparse.Namespace) -> int:
             else:
                 from renderer.farm import render_on
 
-                records = render_on(executor, specs, folder, progress=bar.show, say=say)
+                records = render_on(
+                    executor,
+                    specs,
+                    folder,
+                    progress=bar.show,
+                    say=say,
+                    with_flip=choices["with_flip"],
+                )
     warn_of_missed(records)
     megabytes = sum(record.file_bytes for record in records) / 1e6
     print(f"{len(records)} clips, {megabytes:.1f} MB, in {folder}")

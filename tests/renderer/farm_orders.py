@@ -52,9 +52,15 @@ def is_its_turn(spec: ClipSpec) -> bool:
     return spec.iris_seed in (ALWAYS, FAULTY) or ordered().count(spec.iris_seed) == 1
 
 
-def fill(spec: Mapping[str, Any], version: str, *, contents: Mapping[str, bytes]) -> dict[str, Any]:
+def fill(
+    spec: Mapping[str, Any],
+    version: str,
+    *,
+    contents: Mapping[str, bytes],
+    with_flip: bool = False,
+) -> dict[str, Any]:
     """Stand in for ``renderer.orders.fill_order``."""
-    del version, contents
+    del version, contents, with_flip
     clip = ClipSpec.from_dict(dict(spec))
     with (Path(os.environ["OCULARIST_TEST_FOLDER"]) / "orders.txt").open("a") as log:
         log.write(f"{clip.iris_seed}\n")
@@ -62,7 +68,7 @@ def fill(spec: Mapping[str, Any], version: str, *, contents: Mapping[str, bytes]
         raise ValueError("the iris is on holiday")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "clip.mp4"
-        record = make_clip(clip, path, source=Gradients())
+        record = make_clip(clip, path, source=Gradients(), with_flip=False)
         data = path.read_bytes()
     if clip.iris_seed == DAMAGED and is_its_turn(clip):
         data = data[:-1]

@@ -166,7 +166,7 @@ def test_files_that_a_worker_lacks_are_sent_once(
 
     used: list[Path] = []
 
-    def make(spec: ClipSpec) -> dict[str, Any]:
+    def make(spec: ClipSpec, _with_flip: bool) -> dict[str, Any]:
         used.append(Path(spec.iris_file))
         return farm_orders.fill(spec.to_dict(), "", contents={})
 
@@ -174,9 +174,9 @@ def test_files_that_a_worker_lacks_are_sent_once(
     sent: list[list[str]] = []
     fill = orders.fill_order
 
-    def fill_and_note(spec: Any, version: str, *, contents: Any) -> Any:
+    def fill_and_note(spec: Any, version: str, *, contents: Any, **choices: bool) -> Any:
         sent.append(list(contents))
-        return fill(spec, version, contents=contents)
+        return fill(spec, version, contents=contents, **choices)
 
     monkeypatch.setattr(farm, "fill_order", fill_and_note)
     specs = [with_iris, replace(with_iris, pupil_mm=3.0)]
@@ -201,7 +201,9 @@ def test_a_file_that_changed_is_not_sent(with_iris: ClipSpec, tmp_path: Path) ->
 def test_a_kept_file_that_was_damaged_is_asked_for_again(
     with_iris: ClipSpec, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(orders, "_make", lambda spec: {"data": Path(spec.iris_file).read_bytes()})
+    monkeypatch.setattr(
+        orders, "_make", lambda spec, _flip: {"data": Path(spec.iris_file).read_bytes()}
+    )
     spec = with_iris.to_dict() | {"iris_file": "/elsewhere/anna.npz"}
     sent = {"iris_file": b"an iris"}
     assert orders.fill_order(spec, code_version(), contents={}) == {"wanted": ["iris_file"]}
@@ -213,10 +215,26 @@ def test_a_kept_file_that_was_damaged_is_asked_for_again(
 
 
 def test_an_error_says_on_which_machine(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(_spec: ClipSpec) -> None:
+    def fail(_spec: ClipSpec, _with_flip: bool) -> None:
         raise RuntimeError("no OpenGL 4.3")
 
     monkeypatch.setattr(orders, "_make", fail)
     with pytest.raises(RuntimeError) as failed:
         orders.fill_order(SPEC.to_dict(), code_version(), contents={})
     assert failed.value.__notes__ == [f"on {socket.gethostname()}"]
+
+
+def test_the_choice_about_flip_reaches_the_worker(
+    here: Executor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[bool] = []
+
+    def fail(_spec: ClipSpec, with_flip: bool) -> None:
+        asked.append(with_flip)
+        raise RuntimeError("enough")
+
+    monkeypatch.setattr(orders, "_make", fail)
+    for with_flip in (True, False):
+        with pytest.raises(BatchError, match="enough"):
+            render_on(here, [SPEC], tmp_path, with_flip=with_flip)
+    assert asked == [True, False]
