@@ -6,9 +6,10 @@ is in the picture.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
-from renderer.benchmark.clock import spread_of
+from renderer.benchmark.clock import WARM_UP, spread_of
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import BOTH, Stand, Step
 from renderer.clip import CROWDS
@@ -19,14 +20,17 @@ DISTANCE: Final = "far"
 LOD: Final = "ultra"
 
 
-def crowd_steps(rounds: int) -> list[Step]:
-    """Return the one step, whose frames must be taken in turn."""
-    return [Step(PART, "crowds of " + ", ".join(map(str, CROWDS)), 6.0 * (rounds + 2) + 60, _crowd)]
+def crowd_steps(rounds: int, *, is_quick: bool) -> list[Step]:
+    """Return the one step, whose frames must be taken in turn; in a hurry of the least and most."""
+    crowds = (CROWDS[0], CROWDS[-1]) if is_quick else CROWDS
+    title = ", ".join(map(str, crowds)) + " people"
+    weight = len(crowds) * (1.5 * (rounds + WARM_UP) + 25)
+    return [Step(PART, title, weight, partial(_measure, crowds=crowds))]
 
 
-def _crowd(stand: Stand, bench: Bench) -> None:
+def _measure(stand: Stand, bench: Bench, *, crowds: tuple[int, ...]) -> None:
     detail = Detail.uniform(LOD)
-    specs = [stand.spec(detail, DISTANCE, eyes=BOTH, crowd=crowd) for crowd in CROWDS]
+    specs = [stand.spec(detail, DISTANCE, eyes=BOTH, crowd=crowd) for crowd in crowds]
     times = stand.time([stand.frames(spec, eyes=BOTH) for spec in specs])
     bench.rows.extend(
         stand.row(PART, spec, spread_of(ms), lod=LOD, eyes=len(BOTH), crowd=spec.crowd)

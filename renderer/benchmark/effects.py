@@ -11,7 +11,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from renderer.benchmark.clock import difference
+from renderer.benchmark.clock import WARM_UP, difference
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import Stand, Step
 from renderer.detail import EFFECTS, LEVELS, STANDARD_LODS, TABLE, Detail
@@ -21,31 +21,37 @@ BASES: Final = ("low", "ultra")
 WEIGHT: Final = {"low": 0.4, "ultra": 1.0}  # of a frame
 
 
-def levels_of(effect: str) -> tuple[str, ...]:
-    """Return ``off`` and the levels of an effect that are not the same as off (Table 5.1: None)."""
+def levels_of(effect: str, *, is_quick: bool = False) -> tuple[str, ...]:
+    """Return ``off`` and the levels of an effect that are not the same as off (Table 5.1: None).
+
+    In a hurry only the highest.
+    """
     off = TABLE[effect]["off"].settings
-    return ("off", *(level for level in LEVELS[1:] if TABLE[effect][level].settings != off))
+    levels = [level for level in LEVELS[1:] if TABLE[effect][level].settings != off]
+    return ("off", *(levels[-1:] if is_quick else levels))
 
 
 def effect_steps(rounds: int, *, is_quick: bool) -> list[Step]:
-    """Return a step per base and effect; in a hurry from ultra alone."""
+    """Return a step per base and effect; in a hurry ultra minus none, from ultra alone."""
     return [
         Step(
             PART,
             f"{effect} from {base}",
-            len(levels_of(effect)) * (WEIGHT[base] * (rounds + 2) + 5),
-            partial(_measure, effect=effect, base=base),
+            len(levels_of(effect, is_quick=is_quick)) * WEIGHT[base] * (rounds + WARM_UP + 8),
+            partial(_measure, effect=effect, base=base, is_quick=is_quick),
         )
         for base in BASES[1 if is_quick else 0 :]
         for effect in EFFECTS
     ]
 
 
-def _measure(stand: Stand, bench: Bench, *, effect: str, base: str) -> None:
-    levels = levels_of(effect)
+def _measure(stand: Stand, bench: Bench, *, effect: str, base: str, is_quick: bool) -> None:
+    levels = levels_of(effect, is_quick=is_quick)
     lod = Detail.uniform(base)
     specs = [stand.spec(lod.with_levels(**{effect: level})) for level in levels]
-    off, *others = stand.time([stand.frames(spec) for spec in specs])
+    whole = stand.spec(lod)
+    variants = [stand.kept_frames(s) if s == whole else stand.frames(s) for s in specs]
+    off, *others = stand.time(variants)
     bench.rows.extend(
         stand.row(PART, spec, difference(ms, off), effect=effect, level=level, base=base)
         for level, spec, ms in zip(levels[1:], specs[1:], others, strict=True)

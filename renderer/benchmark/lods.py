@@ -10,14 +10,14 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from renderer.benchmark.clock import spread_of
+from renderer.benchmark.clock import WARM_UP, spread_of
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import BOTH, ONE, Stand, Step
 from renderer.clip import DISTANCES
 from renderer.detail import STANDARD_LODS, Detail
 
 PART: Final = "lods"
-WEIGHT: Final = 2.2  # per round: four LoDs of which ultra is 1, low about 0.3
+WEIGHT: Final = 3.8  # of a round with two eyes; the set-up takes as long as eight rounds
 
 
 def lod_steps(rounds: int, *, is_quick: bool) -> list[Step]:
@@ -26,7 +26,7 @@ def lod_steps(rounds: int, *, is_quick: bool) -> list[Step]:
         Step(
             PART,
             f"{distance}, {'two eyes' if eyes == BOTH else 'one eye'}",
-            WEIGHT * (rounds + 2) + 20,
+            len(eyes) * WEIGHT * (rounds + WARM_UP + 8) / 2,
             partial(_measure, distance=distance, eyes=eyes),
         )
         for distance in DISTANCES[: 1 if is_quick else None]

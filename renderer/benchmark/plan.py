@@ -39,8 +39,7 @@ class Progress:
 def steps_of(parts: Sequence[str], *, is_quick: bool) -> list[Step]:
     """Return the steps of some parts in the order of PARTS.
 
-    In a hurry there are fewer rounds, one cube size in two, the effects from ultra alone and the
-    memory of ultra alone.
+    In a hurry each part measures its ends only, in fewer rounds.
     """
     rounds = QUICK_ROUNDS if is_quick else ROUNDS
     each: dict[str, list[Step]] = {
@@ -48,9 +47,9 @@ def steps_of(parts: Sequence[str], *, is_quick: bool) -> list[Step]:
         "effects": effect_steps(rounds, is_quick=is_quick),
         "samples": sample_steps(rounds, is_quick=is_quick),
         "cubes": cube_steps(rounds, is_quick=is_quick),
-        "crowd": crowd_steps(rounds),
+        "crowd": crowd_steps(rounds, is_quick=is_quick),
         "work": work_steps(is_quick=is_quick),
-        "startup": startup_steps(),
+        "startup": startup_steps(is_quick=is_quick),
         "memory": memory_steps(is_quick=is_quick),
     }
     return [step for part in PARTS if part in parts for step in each[part]]

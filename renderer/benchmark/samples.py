@@ -6,9 +6,10 @@ GLSL on a patch of the iris against 4000 small steps (``renderer.certification.l
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Final
 
-from renderer.benchmark.clock import difference
+from renderer.benchmark.clock import WARM_UP, difference
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import Stand, Step
 from renderer.certification.layers import STEPS, LayerError, integrator_errors
@@ -16,50 +17,48 @@ from renderer.detail import Detail
 
 PART: Final = "samples"
 SAMPLES: Final = (2, 10, 20, 50, 100, 200)
+QUICK_SAMPLES: Final = (10, 200)
 OURS: Final = ("high", "ultra")  # 6 and 12 nodes
 POINTS: Final = 12  # along each side of the patch
 
 
 def sample_steps(rounds: int, *, is_quick: bool) -> list[Step]:
-    """Return the one step, whose frames must be taken in turn."""
+    """Return the one step, whose frames must be taken in turn; in a hurry some of them."""
+    samples, ours = (QUICK_SAMPLES, OURS[-1:]) if is_quick else (SAMPLES, OURS)
     points = POINTS // 2 if is_quick else POINTS
-
-    def measure(stand: Stand, bench: Bench) -> None:
-        _measure(stand, bench, points=points)
-
-    weight = (len(SAMPLES) + len(OURS) + 4) * (rounds + 2) + 5 * 9 + points**2 / 3
+    weight = (len(samples) + len(ours) + 1) * (1.2 * (rounds + WARM_UP) + 8) + points**2 / 3
+    measure = partial(_measure, samples=samples, ours=ours, points=points)
     return [Step(PART, "left sums and ours", weight, measure)]
 
 
-def _measure(stand: Stand, bench: Bench, *, points: int) -> None:
+def _measure(
+    stand: Stand, bench: Bench, *, samples: tuple[int, ...], ours: tuple[str, ...], points: int
+) -> None:
     ultra = Detail.uniform("ultra")
     off = stand.spec(ultra.with_levels(subsurface="off"))
-    sums = [stand.spec(ultra, subsurface_samples=count) for count in SAMPLES]
-    ours = [stand.spec(ultra.with_levels(subsurface=level)) for level in OURS]
-    without, *times = stand.time([stand.frames(spec) for spec in (off, *sums, *ours)])
-    nodes = tuple(int(spec.left.setting("subsurface", "nodes")) for spec in ours)
+    sums = [stand.spec(ultra, subsurface_samples=count) for count in samples]
+    pieces = [stand.spec(ultra.with_levels(subsurface=level)) for level in ours]
+    without, *times = stand.time([stand.frames(spec) for spec in (off, *sums, *pieces)])
+    nodes = [int(spec.left.setting("subsurface", "nodes")) for spec in pieces]
     errors = integrator_errors(
         stand.studio.gl,
         iris_seed=off.iris_seed,
         iris_colour=off.iris_colour,
         points=points,
-        wanted=[("left sum", n) for n in SAMPLES] + [("pieces", n) for n in nodes],
+        wanted=[("left sum", n) for n in samples] + [("pieces", n) for n in nodes],
         steps=STEPS,
     )
-    levels = [*["ultra"] * len(SAMPLES), *OURS]
-    counts = [*SAMPLES, *[0] * len(OURS)]
-    for spec, ms, error, level, samples in zip(
-        (*sums, *ours), times, errors, levels, counts, strict=True
-    ):
+    counts = [*samples, *[0] * len(ours)]
+    for spec, ms, error, count in zip((*sums, *pieces), times, errors, counts, strict=True):
         bench.rows.append(
             stand.row(
                 PART,
                 spec,
                 difference(ms, without),
                 effect="subsurface",
-                level=level,
+                level=spec.left.subsurface,
                 base="ultra",
-                samples=samples,
+                samples=count,
                 **_said(error),
             )
         )

@@ -41,6 +41,7 @@ class Stand:
         self.rounds = rounds
         self.clock = clock_of(self.studio.gl_renderer)
         self._timer = timer_of(self.studio.gl, self.clock)
+        self._kept: FrameRenderer | None = None
 
     def spec(
         self,
@@ -60,6 +61,12 @@ class Stand:
     def frames(self, spec: ClipSpec, *, eyes: tuple[int, ...] = ONE) -> FrameRenderer:
         """Return a renderer of a clip's frames, in the scene of the last one where it fits."""
         return self.studio.renderer(spec, eyes=eyes)
+
+    def kept_frames(self, spec: ClipSpec) -> FrameRenderer:
+        """Return the same for a clip that many steps compare with; the last one asked for stays."""
+        if self._kept is None or self._kept.spec != spec:
+            self._kept = self.frames(spec)
+        return self._kept
 
     def time(self, variants: Sequence[FrameRenderer]) -> list[list[float]]:
         """Return milliseconds per variant and round, taken in turn."""

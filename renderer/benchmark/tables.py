@@ -145,7 +145,7 @@ def _work(bench: Bench) -> list[Table]:
 def _startup(bench: Bench) -> list[Table]:
     cell = {(stage.stage, stage.cache): stage.seconds for stage in bench.startup}
     stages = list(dict.fromkeys(stage for stage, _ in cell))
-    caches = ("cold", "warm")
+    caches = tuple(dict.fromkeys(cache for _, cache in cell))
     rows = [(name, *(f"{cell[name, cache]:.2f}" for cache in caches)) for name in stages]
     if rows:
         rows.append(

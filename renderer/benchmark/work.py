@@ -17,7 +17,7 @@ import numpy.typing as npt
 from renderer.benchmark.counting import counted
 from renderer.benchmark.effects import levels_of
 from renderer.benchmark.result import Bench, Work
-from renderer.benchmark.samples import SAMPLES
+from renderer.benchmark.samples import OURS, SAMPLES
 from renderer.benchmark.stand import ONE, Stand, Step
 from renderer.camera import eye_centre_mm, views
 from renderer.clip import ClipSpec
@@ -35,8 +35,9 @@ Counts = npt.NDArray[np.float32]
 
 def work_steps(*, is_quick: bool) -> list[Step]:
     """Return the one step; in a hurry it leaves the effects' levels out."""
-    variants = 4 + len(SAMPLES) + 2 + (0 if is_quick else 25)
-    return [Step(PART, "counting", 15 + 5 * variants, partial(_measure, has_effects=not is_quick))]
+    variants = 4 + len(SAMPLES) + len(OURS) + (0 if is_quick else 25)
+    weight = 10.0 + 3.0 * variants
+    return [Step(PART, "counting", weight, partial(_measure, has_effects=not is_quick))]
 
 
 def _measure(stand: Stand, bench: Bench, *, has_effects: bool) -> None:
@@ -55,7 +56,7 @@ def _measure(stand: Stand, bench: Bench, *, has_effects: bool) -> None:
         )
     ultra = _counts(stand, frames, ULTRA)
     without = _counts(stand, frames, ULTRA.with_levels(subsurface="off"))
-    for level in ("high", "ultra"):
+    for level in OURS:
         ours = _counts(stand, frames, ULTRA.with_levels(subsurface=level))
         bench.work.append(_effect(ours, without, effect="subsurface", level=level, samples=0))
     for samples in SAMPLES:

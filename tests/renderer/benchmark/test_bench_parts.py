@@ -30,6 +30,7 @@ def test_levels_that_are_none_are_not_measured() -> None:
     assert levels_of("texture") == ("off", "low", "medium", "high", "ultra")
     assert levels_of("caustics") == ("off", "high", "ultra")
     assert levels_of("reflection") == ("off", "medium", "high", "ultra")
+    assert levels_of("reflection", is_quick=True) == ("off", "ultra")
     assert is_none("refraction", "medium")
     assert not is_none("refraction", "high")
 

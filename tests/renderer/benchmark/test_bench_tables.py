@@ -55,6 +55,8 @@ def test_samples_stand_beside_ours_with_their_error(known: Bench) -> None:
 
 def test_the_start_is_summed(known: Bench) -> None:
     assert cells(known, "Start")["sum"] == ("50.50", "5.25")
+    warm = [stage for stage in known.startup if stage.cache == "warm"]
+    assert cells(replace(known, startup=warm), "Start")["sum"] == ("5.25",)
 
 
 def test_the_conditions_head_both_forms(known: Bench) -> None:
