@@ -28,6 +28,7 @@ def build_albedo(
     planes *= _balanced_gain(plane, lift)
     _pale_crests(planes, lift, look)
     _wander(planes, plane.size_px)
+    _sectors(planes, plane, relief, seed)
     for number in range(layout.freckles.radius_mm.size):
         _freckle(planes, plane, relief, spots=layout.freckles, number=number, look=look)
     _limbal_ring(planes, plane, relief)
@@ -80,21 +81,21 @@ def _lightness(relief: Relief, look: Family) -> Field:
     f = np.float32
     lift = f(1.10) * (relief.tone - f(0.45)) + f(0.45) * (relief.height - f(0.40))
     lift += f(1.2) * relief.detail + f(1.5) * (relief.cavity - f(0.86))
-    lift -= f(0.20 + 0.9 * look.veil) * relief.furrow
-    lift -= f(0.85 * (1.0 - 0.3 * look.veil)) * relief.crypt
+    lift -= f(0.55 + 0.6 * look.veil) * relief.furrow
+    lift -= f(1.15 * (1.0 - 0.4 * look.veil)) * relief.crypt
     lift *= f(look.contrast)
     lift += f(0.05) * relief.streaks + f(0.15) * relief.patches
     # Light that scatters between fibres fills gaps and evens out crests: both ends bend.
-    return np.asarray(f(1.5) * np.tanh(lift * f(1.0 / 1.5)))
+    return np.asarray(f(1.9) * np.tanh(lift * f(1.0 / 1.9)))
 
 
 def _ridge_light(plane: Plane, relief: Relief) -> Field:
     """Return the lift of the collarette: paler than both zones, and darker just inside it."""
     beyond = plane.radius_mm - plane.collarette_mm
-    crest = np.exp(-(((beyond - np.float32(0.02)) / np.float32(0.14)) ** 2))
+    crest = np.exp(-(((beyond - np.float32(0.02)) / np.float32(0.12)) ** 2))
     moat = np.exp(-(((beyond + np.float32(0.30)) / np.float32(0.16)) ** 2))
-    broken = np.clip(np.float32(0.7) + np.float32(0.5) * relief.patches, 0.0, 1.4)
-    return np.asarray((np.float32(0.16) * crest - np.float32(0.13) * moat) * broken)
+    broken = np.clip(np.float32(0.7) + np.float32(0.5) * relief.patches, 0.0, 1.2)
+    return np.asarray((np.float32(0.32) * crest - np.float32(0.22) * moat) * broken)
 
 
 def _balanced_gain(plane: Plane, lift: Field) -> Field:
@@ -115,6 +116,16 @@ def _wander(planes: Array, size_px: int) -> None:
     """Blend in the neighbourhood's mean: light that wanders inside the stroma softens it."""
     for part in planes:
         np.add(part, np.float32(0.25) * (blur(part, 0.035, size_px) - part), out=part)
+
+
+def _sectors(planes: Array, plane: Plane, relief: Relief, seed: int) -> None:
+    """Warm and cool the hue from sector to sector, and a little its lightness."""
+    angle = closed_noise(6, seed, 41) + np.float32(0.6) * closed_noise(19, seed, 42)
+    warm = plane.around(angle.astype(np.float32)) + np.float32(0.8) * relief.patches
+    gain = np.exp2(np.float32(0.07) * plane.around(closed_noise(8, seed, 43)))
+    # The shifts leave luminance nearly as it is.
+    for part, share in zip(planes, (0.05, -0.004, -0.05), strict=True):
+        np.multiply(part, gain * np.clip(1.0 + np.float32(share) * warm, 0.7, 1.3), out=part)
 
 
 def _freckle(
@@ -147,9 +158,10 @@ def _limbal_ring(planes: Array, plane: Plane, relief: Relief) -> None:
 def _pupil(planes: Array, plane: Plane, seed: int) -> None:
     """Add the ruff, a beaded edge of the pigment epithelium, and the pupil inside it."""
     inside = plane.radius_mm - plane.pupil_mm
-    width = np.float32(0.075) + np.float32(0.022) * closed_noise(64, seed, 31)
+    width = np.float32(0.082) + np.float32(0.024) * closed_noise(64, seed, 31)
+    width = np.maximum(width + np.float32(0.022) * closed_noise(11, seed, 33), np.float32(0.035))
     ruff = np.float32(0.92) * smoothstep(1.25, 0.75, inside / plane.around(width))
-    beads = np.clip(0.75 + 0.35 * closed_noise(84, seed, 32), 0.3, 1.6).astype(np.float32)
+    beads = np.clip(0.62 + 0.36 * closed_noise(84, seed, 32), 0.15, 1.5).astype(np.float32)
     bead = plane.around(beads)
     hole = smoothstep(0.012, -0.012, inside)
     shade = np.float32(0.55) + np.float32(0.45) * smoothstep(0.0, 0.20, inside)

@@ -14,7 +14,7 @@ from renderer.textures.tubes import Tubes
 def pupillary_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
     """Return the fine straight strands between ruff and collarette."""
     rng = np.random.Generator(np.random.PCG64([seed, 0x9A]))
-    count, key = 2200, seed * 16 + 9
+    count, key = 3000, seed * 16 + 9
     base = rng.uniform(0, 2 * np.pi, count).astype(np.float32)
     inner, outer = over_angle(layout.pupil_mm, base), over_angle(layout.collarette_mm, base)
     whole = rng.random(count) < 0.55
@@ -38,7 +38,7 @@ def pupillary_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
         radius,
         np.asarray(base[run] + offset / radius + lean[run] * span),
         runs,
-        half_width_mm=rng.uniform(0.007, 0.018, count)[run] * (0.25 + 0.75 * ends),
+        half_width_mm=rng.uniform(0.005, 0.014, count)[run] * (0.25 + 0.75 * ends),
         crest=crest * (0.5 + 0.5 * ends),
         tone=rng.uniform(0.15, 0.78, count).astype(np.float32)[run],
     )
@@ -47,28 +47,28 @@ def pupillary_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
 def collarette_tubes(layout: IrisLayout, seed: int, *, step_mm: float) -> Tubes:
     """Return the collarette: broken cords that follow the zigzag and weave about it."""
     rng = np.random.Generator(np.random.PCG64([seed, 0xC0]))
-    count, key = 70, seed * 16 + 10
-    span = np.clip(rng.exponential(0.10, count), 0.05, 0.5)
+    count, key = 150, seed * 16 + 10
+    span = np.clip(rng.exponential(0.13, count), 0.06, 0.6)
     first = rng.uniform(0, 2 * np.pi, count)
     # These runs go along the angle; the ring's radius of about 3.4 mm turns it into lengths.
     runs = lay_runs(first.astype(np.float32), (first + span).astype(np.float32), step=step_mm / 3.6)
     run, angle = runs.run, runs.at
-    shift = rng.normal(0.0, 0.080, count).astype(np.float32)[run]
+    shift = rng.normal(0.0, 0.055, count).astype(np.float32)[run]
     shift += 0.045 * noise_1d(run // 3, angle / np.float32(0.10), key + 11)
     shift += 0.020 * noise_1d(run, angle / np.float32(0.04), key + 12)
     # Cords cross the ring aslant, so that it reads as a zigzag and not as a braid.
     shift += rng.normal(0.0, 0.07, count).astype(np.float32)[run] * (2.0 * runs.along - 1.0)
-    follows = rng.uniform(0.2, 1.0, count).astype(np.float32)[run]
+    follows = rng.uniform(0.6, 1.0, count).astype(np.float32)[run]
     ring = over_angle(layout.collarette_mm, angle)
     radius = ring + (layout.collarette_mm.mean() - ring) * (1.0 - follows) * 0.7 + shift
     ends = taper(runs, reach=0.22, scale=3.4)
-    crest = rng.uniform(0.20, 0.52, count).astype(np.float32)[run]
+    crest = rng.uniform(0.30, 0.74, count).astype(np.float32)[run]
     crest += 0.10 * noise_1d(run, angle / np.float32(0.06), key + 22)
     return polar_tubes(
         radius,
         angle,
         runs,
-        half_width_mm=rng.uniform(0.009, 0.030, count)[run] * (0.2 + 0.8 * ends),
+        half_width_mm=rng.uniform(0.010, 0.036, count)[run] * (0.2 + 0.8 * ends),
         crest=crest * (0.3 + 0.7 * ends),
-        tone=rng.uniform(0.32, 0.64, count).astype(np.float32)[run],
+        tone=rng.uniform(0.36, 0.78, count).astype(np.float32)[run],
     )

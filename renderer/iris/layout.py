@@ -91,8 +91,8 @@ def _collarette(rng: np.random.Generator, cusps: Array, seed: int) -> Array:
     """Zigzag: outward cusps joined by arcs that sag towards the pupil, on a wandering circle."""
     order = np.argsort(cusps)
     cusps = cusps[order]
-    reach = rng.normal(0.0, 0.085, cusps.size)
-    sag = rng.gamma(2.5, 0.055, cusps.size)
+    reach = rng.normal(0.0, 0.115, cusps.size)
+    sag = rng.gamma(2.5, 0.072, cusps.size)
     angle = np.arange(ANGLES) / ANGLES * 2.0 * np.pi
     left = (np.searchsorted(cusps, angle, side="right") - 1) % cusps.size
     right = (left + 1) % cusps.size
@@ -114,7 +114,7 @@ def _crypts(rng: np.random.Generator, cusps: Array, collarette: Array, crypt_rat
     hugging = round(int(rng.integers(4, 16)) * crypt_rate)
     free = round(int(rng.integers(1, 8)) * crypt_rate)
     marginal = round(int(rng.integers(8, 22)) * crypt_rate)
-    area = np.exp(rng.uniform(np.log(0.02), np.log(0.30), hugging + free))
+    area = np.exp(rng.uniform(np.log(0.03), np.log(0.30), hugging + free))
     slender = rng.uniform(1.1, 3.4, hugging + free)
     # A lens of half axes a and b has the area 8 a b / 3 (parabolic sides).
     half_width = np.sqrt(area * 3.0 / 8.0 / slender)
@@ -145,9 +145,9 @@ def _crypts(rng: np.random.Generator, cusps: Array, collarette: Array, crypt_rat
 
 
 def _furrows(rng: np.random.Generator, seed: int) -> Furrows:
-    """Two to five broken arcs in the middle and outer ciliary zone."""
+    """Two to five broken arcs, most in the ciliary zone's outer half."""
     count = int(rng.integers(2, 6))
-    base = np.sort(rng.uniform(4.15, 5.25, count))
+    base = np.sort(rng.uniform(4.4, 5.4, count))
     radius = np.stack(
         [
             base[i] + 0.13 * closed_noise(7, seed, 40 + i) + 0.035 * closed_noise(44, seed, 60 + i)
@@ -159,7 +159,7 @@ def _furrows(rng: np.random.Generator, seed: int) -> Furrows:
             np.clip(
                 0.55 * closed_noise(6, seed, 80 + i)
                 + 0.30 * closed_noise(31, seed, 90 + i)
-                + rng.normal(0.0, 0.15),
+                + rng.normal(0.12, 0.15),
                 0.0,
                 1.0,
             )

@@ -86,7 +86,8 @@ def build_relief(plane: Plane, layout: IrisLayout, seed: int, *, veil: float) ->
     grain = noise_grid(n, n, cells=(300.0, 300.0), seed=key + 5)
     nap = _nap(plane, key) + np.float32(0.35) * grain
     crypt = crypt_mask(plane, layout.crypts, key + 10)
-    furrow = furrow_mask(plane, layout)
+    # Bundles bridge a furrow here and there.
+    furrow = furrow_mask(plane, layout) * np.clip(0.75 + 0.30 * streaks, 0.0, 1.3)
     floor = 0.045 + 0.030 * streaks + 0.012 * grain
     fibres, tone = _weave(decks, np.float32(0.10) + np.float32(0.07) * streaks, n)
     height = np.maximum(fibres, floor)

@@ -77,7 +77,7 @@ def bend_with_flow(layout: IrisLayout, angle: Field, radius: Field, seed: int) -
     to_left = angle_between(ordered[right - 1], angle)
     nearest = np.where(np.abs(to_right) < np.abs(to_left), to_right, to_left)
     ring = over_angle(layout.collarette_mm, angle)
-    pull = 0.24 * np.exp(-(((radius - ring - 0.08) / 0.40) ** 2))
+    pull = 0.36 * np.exp(-(((radius - ring - 0.08) / 0.40) ** 2))
     return np.asarray(angle + nearest * pull, np.float32)
 
 

@@ -32,7 +32,8 @@ class Deck:
 
     ``guides`` bundles around the circle (0: no bundling), ``count`` runs, ``run_mm`` mean length,
     ``whole`` share of runs that span the zone, ``spread_mm`` of a run about its guide, ``sweep``
-    turn in radians from collarette to root, ``obeys`` how far crypts push it aside.
+    turn in radians from collarette to root, ``obeys`` how far crypts push it aside, ``uneven`` how
+    much whole bundles differ in tone and height (standard deviation).
     """
 
     count: int
@@ -46,17 +47,59 @@ class Deck:
     sweep: float
     wave_mm: float
     obeys: float
+    uneven: float
 
 
 DECKS: Final = (
     # deep lattice, crossing in both senses
-    Deck(3200, 0, (0.010, 0.019), (0.08, 0.28), (0.02, 0.30), 1.2, 0.30, 0.0, 0.16, 0.012, 0.2),
+    Deck(
+        3200, 0, (0.010, 0.019), (0.08, 0.28), (0.02, 0.30), 1.2, 0.30, 0.0, 0.20, 0.012, 0.2, 0.0
+    ),
     # children between the bundles
-    Deck(2600, 230, (0.012, 0.024), (0.20, 0.48), (0.15, 0.52), 0.9, 0.25, 0.06, 0.07, 0.016, 0.7),
+    Deck(
+        2600,
+        230,
+        (0.011, 0.021),
+        (0.20, 0.48),
+        (0.15, 0.52),
+        0.9,
+        0.25,
+        0.06,
+        0.12,
+        0.020,
+        0.7,
+        0.08,
+    ),
     # bundles: ropes of a dozen fibrils
-    Deck(2200, 130, (0.009, 0.019), (0.36, 0.72), (0.36, 0.82), 1.3, 0.45, 0.046, 0.06, 0.026, 1.0),
+    Deck(
+        2200,
+        130,
+        (0.008, 0.017),
+        (0.36, 0.72),
+        (0.36, 0.82),
+        1.3,
+        0.45,
+        0.046,
+        0.11,
+        0.034,
+        1.0,
+        0.12,
+    ),
     # few cords on top
-    Deck(330, 46, (0.009, 0.017), (0.58, 0.88), (0.58, 1.00), 1.5, 0.45, 0.020, 0.10, 0.036, 1.0),
+    Deck(
+        330,
+        46,
+        (0.009, 0.017),
+        (0.58, 0.88),
+        (0.58, 1.00),
+        1.5,
+        0.45,
+        0.020,
+        0.19,
+        0.042,
+        1.0,
+        0.08,
+    ),
 )
 
 
@@ -81,10 +124,13 @@ def ciliary_tubes(layout: IrisLayout, seed: int, *, index: int, step_mm: float) 
     def per_run(bounds: tuple[float, float]) -> Array:
         return rng.uniform(*bounds, deck.count).astype(np.float32)[runs.run]
 
+    strong = deck.uneven * rng.normal(0.0, 1.0, guides).astype(np.float32)[owner]
     # A whole bundle rises and dives together, so bundles weave over and under each other.
     crest = per_run(deck.crest) + 0.085 * noise_1d(owner, radius / np.float32(0.55), key + 404)
+    crest += np.float32(0.7) * strong
     crest += 0.040 * noise_1d(runs.run, radius / np.float32(0.35), key + 405)
     tone = per_run(deck.tone) + 0.07 * noise_1d(owner, radius / np.float32(0.6), key + 505)
+    tone += strong
     tone += 0.04 * noise_1d(runs.run, radius / np.float32(0.2), key + 506)
     ends = taper(runs, reach=0.30)
     swell = 1.0 + 0.18 * noise_1d(runs.run, radius / np.float32(0.3), key + 606)
