@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Final
 
 from PIL import Image
 
@@ -15,8 +14,6 @@ from renderer.frame import FrameRenderer
 from renderer.group import GroupRenderer
 from renderer.picture import EXPOSURE
 from renderer.sources import code_version
-
-VIEWS: Final = ("face", "crowd")
 
 
 def write_still(

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
 from study.commands.eye_arguments import add_picture
 from study.commands.eye_options import spec_of, viewpoint_of
+
+if TYPE_CHECKING:
+    from renderer.clip import ClipSpec
 
 HELP = "render one frame"
 DESCRIPTION = (
@@ -17,11 +21,32 @@ DESCRIPTION = (
     "shown alone (--only-effect caustics). A file named .exr gets linear radiance."
 )
 KINDS: Final = (".png", ".exr")
+VIEWS: Final = ("face", "crowd")
+GROUP: Final = 30  # people in the crowd's view unless --crowd says otherwise
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
     add_picture(parser)
+    parser.add_argument(
+        "--iris-px",
+        type=float,
+        metavar="PX",
+        help="instead of --distance: one camera, as far off as makes an iris this wide on 1080 "
+        "lines, at most 243",
+    )
+    parser.add_argument(
+        "--switching",
+        choices=("blended", "instant"),
+        help="take both eyes' LoDs from their size in pixels, by Ocularist's own policy",
+    )
+    parser.add_argument(
+        "--view",
+        choices=VIEWS,
+        default="face",
+        help="crowd: the other characters alone, in rows before a wide lens, each eye at the LoD "
+        "of its size; --crowd says how many (default: %(default)s)",
+    )
     parser.add_argument("--wireframe", action="store_true", help="draw the eyes' meshes as lines")
     parser.add_argument(
         "--out",
@@ -39,11 +64,45 @@ def run(options: argparse.Namespace) -> int:
         raise CommandError(
             f'{options.out}: unknown kind of picture "{options.out.suffix}"; {" or ".join(KINDS)}'
         )
-    spec = spec_of(options)
+    if options.view == "crowd":
+        _check_group(options)
+    spec = _by_size(spec_of(options), options)
 
     from renderer.still import write_still
 
     viewpoint = viewpoint_of(options, spec)
-    write_still(options.out, spec, **viewpoint, wireframe=options.wireframe)
+    write_still(options.out, spec, **viewpoint, wireframe=options.wireframe, view=options.view)
     print(options.out)
     return 0
+
+
+def _check_group(options: argparse.Namespace) -> None:
+    """Give the crowd's view its people; raises CommandError for options it cannot have."""
+    if options.wireframe:
+        raise CommandError("--wireframe: only the main character's eyes; leave out --view crowd")
+    if options.crowd == 0:
+        raise CommandError("--crowd 0: the crowd's view needs people; choose 5, 10 or 30")
+    options.crowd = options.crowd or GROUP
+
+
+def _by_size(spec: ClipSpec, options: argparse.Namespace) -> ClipSpec:
+    """Put the camera where --iris-px says, and let the LoDs follow from the eyes' size."""
+    if options.iris_px is not None:
+        if options.frame is not None:
+            raise CommandError("--frame: a frame has its own distance; leave --iris-px out")
+        spec = replace(spec, motion="approach", approach_end_px=options.iris_px)
+    if options.switching is None:
+        return spec
+    if options.effect or options.only_effect:
+        raise CommandError("--switching: takes the levels from a policy; leave effects out")
+    from renderer.lod_policy import default_policy
+
+    policy = default_policy()
+    return replace(
+        spec,
+        left=policy.finest,
+        right=policy.finest,
+        left_switching=options.switching,
+        right_switching=options.switching,
+        lod_policy=policy,
+    )
