@@ -12,6 +12,7 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
+from renderer.lod_policy import default_policy
 from study.cli import build_parser, main
 from study.commands.eye_options import spec_of, viewpoint_of
 from study.commands.listening import address_of, check_port, welcome
@@ -87,6 +88,25 @@ def test_the_camera_stands_at_an_azimuth_or_where_a_frame_has_it() -> None:
         "elevation_deg": 0.0,
         "time_s": 1.0,
     }
+
+
+def test_a_still_shows_any_size_with_the_lods_that_follow_from_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    drawn: list[ClipSpec] = []
+    monkeypatch.setattr("renderer.still.write_still", lambda _out, spec, **_: drawn.append(spec))
+    assert main(["still", "--iris-px", "30", "--switching", "blended"]) == 0
+    (spec,) = drawn
+    assert (spec.motion, spec.approach_end_px) == ("approach", 30.0)
+    assert (spec.left_switching, spec.right_switching) == ("blended", "blended")
+    assert spec.lod_policy == default_policy()
+    capsys.readouterr()
+    assert main(["still", "--iris-px", "30", "--frame", "2"]) == 1
+    assert "--frame: a frame has its own distance" in capsys.readouterr().err
+    assert main(["still", "--switching", "instant", "--effect", "caustics=off"]) == 1
+    assert "--switching: takes the levels from a policy" in capsys.readouterr().err
+    assert main(["still", "--iris-px", "300"]) == 1
+    assert "approach_end_px: 300 is too large; one camera shows" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
