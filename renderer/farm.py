@@ -51,7 +51,9 @@ def render_on(
 
     ``progress`` hears how many clips are there; clips of one name are one. ``say`` hears of clips
     that are tried again. One that fails does not stop the others: BatchError names all that failed
-    when the rest is done. Raises VersionMismatchError at once when a worker has other sources.
+    when the rest is done, and ends the batch at once when a worker has other sources or the
+    connection is lost. An executor that breaks as a whole when a process is killed, as
+    ProcessPoolExecutor does, ends it too; ``study.commands.pool.Pool`` replaces the process.
     """
     remove_parts(folder)
     manifest = read_manifest(folder)
