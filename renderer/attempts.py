@@ -11,7 +11,7 @@ from renderer.comparison import Comparison
 from renderer.encode import QUALITY, encode_again
 from renderer.eye_boxes import eye_boxes
 
-MAX_ATTEMPTS: Final = 3  # each takes about a fifth of the time of rendering
+MAX_ATTEMPTS: Final = 3  # each takes about a third of the time of rendering
 
 
 def settle(path: Path, master: Path, *, spec: ClipSpec, comparison: Comparison) -> Attempt:
@@ -21,14 +21,16 @@ def settle(path: Path, master: Path, *, spec: ClipSpec, comparison: Comparison) 
     """
     limit, boxes = max_bytes(spec), eye_boxes(spec)
     best = attempt = _measure(path, QUALITY, comparison)
+    tried = [attempt]
     again = path.with_suffix(".again.mp4")
     for _ in range(MAX_ATTEMPTS - 1):
-        quality = next_quality(attempt, limit=limit)
+        quality = next_quality(tried, limit=limit)
         if quality is None:
             break
         try:
             encode_again(master, again, boxes=boxes, quality=quality)
             attempt = _measure(again, quality, comparison)
+            tried.append(attempt)
             if better(best, attempt, limit=limit) is attempt:
                 again.replace(path)
                 best = attempt

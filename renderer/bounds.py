@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -13,12 +14,13 @@ MAX_BYTES: Final = 8_000_000  # of a clip of 5 s with 1920 x 1080 pixels or fewe
 REFERENCE_S: Final = 5.0
 REFERENCE_PX: Final = 1920 * 1080
 MAX_FLIP_SHARE: Final = 0.1
-STEPS_PER_OCTAVE: Final = 6.0  # x264: six steps of its quality double or halve a file, about
-FULL: Final = 0.97  # a file this near to its bound is as good as it can be
+STEPS_PER_OCTAVE: Final = 5.0  # what doubled or halved a macroscopic clip's file; noise needs 11
+FULL: Final = 0.95  # aim a little below the bound
 FINEST: Final = 8.0
 COARSEST: Final = 50.0
-LONGEST_STEP: Final = 8.0
-LEAST_STEP: Final = 0.5  # less is not worth encoding again
+LONGEST_STEP: Final = 12.0
+LEAST_STEP: Final = 0.5
+WORTHWHILE: Final = 1.0  # less finer is not worth encoding again
 
 
 @dataclass(frozen=True)
@@ -57,18 +59,28 @@ def missed_bounds(attempt: Attempt, *, limit: int) -> list[str]:
     return missed
 
 
-def next_quality(attempt: Attempt, *, limit: int) -> float | None:
-    """Return the quality to try after an attempt, None where no other can do better."""
-    octaves = math.log2(attempt.file_bytes / (FULL * limit))
-    share = attempt.fidelity.flip_share
-    if attempt.file_bytes > limit:
-        wanted = min(COARSEST, attempt.quality + max(0.5, STEPS_PER_OCTAVE * octaves))
+def next_quality(tried: Sequence[Attempt], *, limit: int) -> float | None:
+    """Return the quality to try after some attempts, None where no other can do better."""
+    last = tried[-1]
+    to_bound = _steps_per_octave(tried) * math.log2(last.file_bytes / (FULL * limit))
+    share = last.fidelity.flip_share
+    if last.file_bytes > limit:
+        wanted = min(COARSEST, last.quality + max(LEAST_STEP, to_bound))
     elif share is not None and share > MAX_FLIP_SHARE:
-        finer = min(LONGEST_STEP, -STEPS_PER_OCTAVE * octaves)
-        wanted = max(FINEST, attempt.quality - max(0.0, finer))
+        wanted = max(FINEST, last.quality - min(LONGEST_STEP, -to_bound))
+        return wanted if wanted <= last.quality - WORTHWHILE else None
     else:
         return None
-    return None if abs(wanted - attempt.quality) < LEAST_STEP else wanted
+    return wanted if wanted > last.quality else None
+
+
+def _steps_per_octave(tried: Sequence[Attempt]) -> float:
+    """Return how many steps of quality double or halve a file, from the last two attempts."""
+    if len(tried) < 2 or tried[-1].file_bytes == tried[-2].file_bytes:
+        return STEPS_PER_OCTAVE
+    steps = tried[-1].quality - tried[-2].quality
+    found = steps / math.log2(tried[-2].file_bytes / tried[-1].file_bytes)
+    return min(max(found, STEPS_PER_OCTAVE / 2), 3 * STEPS_PER_OCTAVE)
 
 
 def better(one: Attempt, other: Attempt, *, limit: int) -> Attempt:

@@ -37,9 +37,7 @@ def _almond(rectangles: list[Rectangle]) -> list[Box]:
     width = max(columns.stop for _, columns in rectangles) - left
     boxes = []
     for start, stop, share in _ALMOND:
-        tall = max(1, round(height * share))
-        x = left + round(start * width)
-        boxes.append(
-            Box(x, top + (height - tall) // 2, max(1, round((stop - start) * width)), tall)
-        )
+        x, tall = left + round(start * width), max(1, round(height * share))
+        wide = max(1, left + round(stop * width) - x)
+        boxes.append(Box(x, top + (height - tall) // 2, wide, tall))
     return boxes

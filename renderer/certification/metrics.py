@@ -12,14 +12,13 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from renderer.flip import PIXELS_PER_DEGREE
 from renderer.picture import EXPOSURE
 
 Picture = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
 LUMINANCE: Final = np.array([0.2126, 0.7152, 0.0722])  # Rec. 709
-# FLIP wants to know how large a pixel looks: a 0.7 m wide 4K screen seen from 0.7 m, its default.
-PIXELS_PER_DEGREE: Final = 67.02
 LEAST_FOR_FLIP: Final = 1e-4  # its exposures are computed from logarithms
 
 

@@ -82,6 +82,21 @@ def test_a_lost_or_cut_file_is_rendered_again(tmp_path: Path) -> None:
     assert source.asked == 2 * [SPEC.clip_id, "4 others"]
 
 
+def test_a_master_is_kept_on_request_and_made_once(tmp_path: Path) -> None:
+    source = Pattern()
+    plain = render_clip(SPEC, tmp_path, source=source, with_flip=False)
+    assert plain.master is None
+    assert not list(tmp_path.glob("*.mkv"))
+    kept = render_clip(SPEC, tmp_path, source=source, with_flip=False, with_master=True)
+    assert kept.master is not None
+    assert (tmp_path / kept.master["file"]).stat().st_size == kept.master["bytes"]
+    assert kept.file_sha256 == plain.file_sha256  # people see the same clip
+    assert render_clip(SPEC, tmp_path, source=source, with_master=True) == kept
+    assert render_clip(SPEC, tmp_path, source=source) == kept
+    assert source.asked == 2 * [SPEC.clip_id]
+    assert not list(tmp_path.glob(".*.part.*"))
+
+
 def test_a_damaged_manifest_is_refused_by_name(tmp_path: Path) -> None:
     (tmp_path / MANIFEST_NAME).write_text("{not json")
     with pytest.raises(ValueError, match=r"manifest\.json: not a manifest of schema 2"):

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
+from renderer.manifest import read_manifest, write_manifest
 from study.data import events, jobs, trials
 from study.data.quality import quality
-from study.site.media import ClipShelf
+from study.site.media import ClipShelf, public_name
 
 STATE = "/preparing/state?screen_width_px=1920&screen_height_px=1080"
 
@@ -134,6 +137,23 @@ def test_a_file_of_another_length_is_no_clip(site: Any) -> None:
     assert record is not None
     (site.settings.media_folder / record.file).write_bytes(b"cut off")
     assert shelf.record(clip_id) is None
+
+
+def test_a_master_is_never_served(site: Any, guest: Any) -> None:
+    folder = site.settings.media_folder
+    manifest = read_manifest(folder)
+    record = next(iter(manifest.clips.values()))
+    (folder / "a.master.mkv").write_bytes(b"lossless")
+    sha256 = hashlib.sha256(b"lossless").hexdigest()
+    manifest.add(replace(record, master={"file": "a.master.mkv", "sha256": sha256, "bytes": 8}))
+    write_manifest(manifest, folder)
+    guest.walk_to_preparing()
+    shelf = ClipShelf(folder)
+    assert shelf.file(public_name(record)) is not None
+    for name in (sha256[:32], "a.master", "a.master.mkv", f"{record.clip_id}.master"):
+        assert shelf.file(name) is None
+        for suffix in (".mp4", ".mkv", ""):
+            assert guest.client.get(f"/clips/{name}{suffix}").status_code == 404
 
 
 def test_a_play_that_was_interrupted_is_kept_and_does_not_unlock(site: Any, guest: Any) -> None:
