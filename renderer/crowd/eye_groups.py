@@ -5,7 +5,7 @@ Made when a frame first asks for them: most crowds never show a large eye.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any, Final
 
@@ -36,6 +36,9 @@ SWAPPED: Final = {"eye_place.glsl": "crowd_place.glsl", "eye_chamber.glsl": "cro
 _SPEC: Final = ClipSpec(left=Detail(), right=Detail(), pupil_mm=PUPIL_MM)
 
 
+Kind = tuple[Detail, str]  # LoD and iris
+
+
 class EyeGroups:
     """Programs, meshes and textures of the crowd's eyes: ``draw`` draws those of one kind."""
 
@@ -48,14 +51,27 @@ class EyeGroups:
         self._irises: dict[tuple[Detail, str], dict[str, Any]] = {}
         self._caustics: moderngl.TextureArray | None = None
 
-    def draw(self, detail: Detail, iris: str, *, first: int, count: int, values: Any) -> None:
-        """Draw eyes ``first`` to ``first + count`` of the records with a LoD and an iris."""
-        detail = crowd_detail(detail)
-        if detail not in self._kinds:
-            self._kinds[detail] = self._kind(detail)
-        program, mesh, shared = self._kinds[detail]
-        if (detail, iris) not in self._irises:
+    def prepare(self, kinds: Iterable[Kind]) -> None:
+        """Make what kinds of eyes need, in a state of its own: a cube may draw itself first."""
+        missing = [
+            (crowd_detail(detail), iris)
+            for detail, iris in kinds
+            if (crowd_detail(detail), iris) not in self._irises
+        ]
+        if not missing:
+            return
+        target = self._gl.fbo
+        for detail, iris in missing:
+            if detail not in self._kinds:
+                self._kinds[detail] = self._kind(detail)
             self._irises[detail, iris] = self._iris(detail, iris)
+        target.use()
+        self._gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+
+    def draw(self, kind: Kind, *, first: int, count: int, values: dict[str, Any]) -> None:
+        """Draw ``count`` eyes from record ``first`` on; ``prepare`` their kind before."""
+        detail, iris = crowd_detail(kind[0]), kind[1]
+        program, mesh, shared = self._kinds[detail]
         program.set(**shared, **self._irises[detail, iris], **values, u_first_eye=first)
         mesh.render(instances=count)
 

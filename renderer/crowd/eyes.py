@@ -124,11 +124,13 @@ class CrowdEyes:
             "u_pixel_rad": 2.0 / (float(projection[1][1]) * lines),
             "u_lid_rims": self._rims,
         }
+        kinds = groupby(ordered, key=lambda eye: (eye.detail, self._iris(eye)))
+        counts = [(kind, len(list(eyes))) for kind, eyes in kinds]
+        self._groups.prepare(kind for kind, _ in counts)
         first = 0
-        for (_, iris), group in groupby(ordered, key=lambda eye: (eye.lod, self._iris(eye))):
-            same = list(group)
-            self._groups.draw(same[0].detail, iris, first=first, count=len(same), values=values)
-            first += len(same)
+        for kind, count in counts:
+            self._groups.draw(kind, first=first, count=count, values=values)
+            first += count
 
     def _iris(self, eye: DrawnEye) -> str:
         return self._figures[eye.figure].member.person.eye

@@ -135,6 +135,49 @@ def test_a_group_is_the_same_picture_every_time(group: GroupRenderer) -> None:
     assert (other != first).any()
 
 
+def test_the_first_frame_that_needs_a_lod_is_like_those_after_it(group: GroupRenderer) -> None:
+    later = group.render(5.0, time_s=0.5).pixels.copy()
+    groups = group.crowd._eyes._groups
+    groups._kinds.clear()
+    groups._irises.clear()
+    group.surroundings._cubes.clear()
+    assert (group.render(5.0, time_s=0.5).pixels == later).all()
+
+
+@pytest.mark.parametrize(("distance_mm", "lod"), [(1300, "medium"), (260, "high"), (90, "ultra")])
+def test_every_lod_draws_the_eyes_of_whoever_comes_near(
+    group: GroupRenderer, distance_mm: float, lod: str
+) -> None:
+    crowd = group.crowd
+    crowd.pose(1.0)
+    placed, _ = crowd._eyes.gaze.placed(crowd._bones)
+    figure = 16
+    eye = placed[2 * figure]
+    position = eye[:3, 3] + (13.0 + distance_mm) * eye[:3, 2]
+    view = look_at(position, eye[:3, 3])
+    pictures = []
+    for has_eyes in (True, False):
+        group._picture.begin()
+        group._picture.use_rectangle((0, 0, SPEC.width, SPEC.height))
+        kept = crowd._eyes
+        crowd._eyes = kept if has_eyes else None
+        crowd.draw(
+            view_matrix=view,
+            projection=perspective(12.0, 16 / 9, 20.0, 20000.0),
+            camera_mm=position,
+            time_s=1.0,
+        )
+        if has_eyes:
+            drawn = [e for e in crowd.eyes_drawn if (e.figure, e.eye) == (figure, 0)]
+        crowd._eyes = kept
+        pictures.append(group._picture.radiance()[170:190, 310:330])
+    assert [e.lod for e in drawn] == [lod]
+    real, painted = pictures
+    assert np.isfinite(real).all()
+    assert (real != painted).any()
+    assert 0.001 < real.mean() < 2.0
+
+
 def test_a_crowd_of_five_keeps_painted_eyes(standard_scene) -> None:  # type: ignore[no-untyped-def]
     assert len(standard_scene.crowd.figures) == 5
     assert standard_scene.crowd._eyes is None
@@ -188,7 +231,7 @@ def test_the_pool_of_caustics_is_the_clips_own_turned() -> None:
     turned = np.rot90(layers[3][..., 2])
     inner = slice(40, 88)
     ours, theirs = np.rot90(turned, 2), upright[..., 2]
-    np.testing.assert_allclose(ours[inner, inner], theirs[inner, inner], atol=0.05)
+    np.testing.assert_allclose(ours[inner, inner], theirs[inner, inner], atol=1e-3)
 
 
 def test_the_crowd_mirrors_no_moving_people() -> None:
