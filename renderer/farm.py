@@ -52,8 +52,8 @@ def render_on(
     ``progress`` hears how many clips are there; clips of one name are one. ``say`` hears of clips
     that are tried again. One that fails does not stop the others: BatchError names all that failed
     when the rest is done, and ends the batch at once when a worker has other sources or the
-    connection is lost. An executor that breaks as a whole when a process is killed, as
-    ProcessPoolExecutor does, ends it too; ``study.commands.pool.Pool`` replaces the process.
+    connection is lost. An executor that breaks as a whole when one process is killed, as
+    ProcessPoolExecutor does with several, ends it too.
     """
     remove_parts(folder)
     manifest = read_manifest(folder)
