@@ -171,7 +171,7 @@ def test_the_same_eye_has_the_same_bytes(bench: Any) -> None:
 
 def test_ultra_reflection_asks_for_the_crowd(bench: Any) -> None:
     with pytest.raises(ValueError, match="reflection=ultra mirrors moving people"):
-        bench.eyes(Detail.uniform("ultra"), has_crowd=False)
+        bench.picture(bench.eyes(Detail.uniform("ultra"), has_crowd=False))
 
 
 def test_meshes_are_seen_when_facets_are_flat(bench: Any) -> None:
