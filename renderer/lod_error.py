@@ -8,22 +8,28 @@ rendered, through the camera of an approach, so that perspective is right at eve
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Final
 
 from renderer.camera import cropped, views
 from renderer.clip import ClipSpec
-from renderer.detail import Detail
+from renderer.detail import STANDARD_LODS, Detail
 from renderer.fidelity import Rectangle, eye_rectangles
 from renderer.frame import FrameRenderer
-from renderer.lod_derivation import LodError
-from renderer.lod_visibility import visible_difference
+from renderer.lod_derivation import LodError, derive_policy
+from renderer.lod_policy import PolicyFile
+from renderer.lod_visibility import JUST_NOTICEABLE, PIXELS_PER_DEGREE, visible_difference
 from renderer.picture import Pixels
+from renderer.sources import code_version
 from renderer.studio import Studio
 
 REFERENCE_SIZE: Final = (1920, 1080)  # of the frame that rectangles are cut from
 LEAST_CROP_PX: Final = 64  # rectangles of small eyes are rendered with what lies around them
 SIDES: Final = ("left", "right")
+
+# What the policy that comes with the renderer was measured on.
+SIZES_PX: Final = (6.0, 8.0, 11.0, 16.0, 23.0, 32.0, 45.0, 64.0, 90.0, 128.0, 181.0, 240.0)
+AZIMUTHS_DEG: Final = (-35.0, 0.0, 35.0)
 
 
 @dataclass(frozen=True)
@@ -33,6 +39,9 @@ class Look:
     iris_seed: int = 1
     iris_colour: str = "blue"
     preset: str = "thesis"
+
+
+LOOKS: Final = (Look(), Look(iris_seed=2, iris_colour="brown"))
 
 
 @dataclass(frozen=True)
@@ -75,6 +84,36 @@ def measure_errors(
                     for eye in (0, 1)
                 ]
     return errors
+
+
+def derive(studio: Studio, *, progress: Callable[[str], None] = lambda _what: None) -> PolicyFile:
+    """Measure the standard LoDs against ultra and return the policy that follows."""
+    lods = {name: Detail.uniform(name) for name in STANDARD_LODS}
+    reference = STANDARD_LODS[-1]
+    best = lods.pop(reference)
+    errors = measure_errors(
+        studio,
+        lods,
+        reference=best,
+        sights=[Sight(size, azimuth) for size in SIZES_PX for azimuth in AZIMUTHS_DEG],
+        looks=LOOKS,
+        progress=progress,
+    )
+    provenance = {
+        "command": "ocularist lod-policy",
+        "azimuths_deg": AZIMUTHS_DEG,
+        "looks": [asdict(look) for look in LOOKS],
+        "pixels_per_degree": PIXELS_PER_DEGREE,
+        "gl_renderer": studio.gl_renderer,
+        "code_version": code_version(),
+    }
+    return derive_policy(
+        errors,
+        lods,
+        reference=(reference, best),
+        just_noticeable=JUST_NOTICEABLE,
+        provenance=provenance,
+    )
 
 
 def render_rectangles(

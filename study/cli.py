@@ -27,6 +27,7 @@ COMMANDS: Final = (
     "bench",
     "certify",
     "gallery",
+    "lod-policy",
     "iris",
     "serve",
     "simulate",
