@@ -25,15 +25,26 @@ def is_dead(worker: str) -> bool:
         return True
     except PermissionError:
         return False
-    # The number may belong to another process by now.
-    return _started(int(parts[1])) != parts[2]
+    # The number may belong to another process by now, or to one that ended and was not waited for.
+    return _started(int(parts[1])) != parts[2] or _is_ended(int(parts[1]))
 
 
 def _started(pid: int) -> str:
     """Return when a process started, in the kernel's ticks; empty where that cannot be known."""
+    # Field 22 of proc(5), counted from the third.
+    stat = _stat(pid)
+    return stat[19] if stat else ""
+
+
+def _is_ended(pid: int) -> bool:
+    """Say whether a process has ended although its number is still taken."""
+    return _stat(pid)[:1] in (["Z"], ["X"])
+
+
+def _stat(pid: int) -> list[str]:
+    """Return proc(5)'s fields of a process from the third on; empty where there are none."""
     try:
         stat = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
     except OSError:
-        return ""
-    # Field 22 (proc(5)), counted behind the name in brackets, which may hold spaces.
-    return stat.rpartition(")")[2].split()[19]
+        return []
+    return stat.rpartition(")")[2].split()  # the name in brackets may hold spaces

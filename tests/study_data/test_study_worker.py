@@ -378,6 +378,27 @@ def test_a_name_tells_whether_its_process_lives() -> None:
     assert worker_name() != mine
 
 
+def test_a_process_that_ended_is_dead_before_its_parent_has_noticed() -> None:
+    code = (
+        "import sys; from study.worker_names import worker_name; print(worker_name(), flush=True)"
+    )
+    child = subprocess.Popen(
+        [sys.executable, "-c", f"{code}; sys.stdin.read()"],
+        cwd=ROOT,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert child.stdout is not None
+    name = child.stdout.readline().strip()
+    assert not is_dead(name)
+    child.kill()
+    os.waitid(os.P_PID, child.pid, os.WEXITED | os.WNOWAIT)  # it stays there as a zombie
+    assert is_dead(name)
+    child.communicate()
+    assert is_dead(name)
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_signals_ask_for_a_stop_and_are_given_back(number: signal.Signals) -> None:
     before = signal.getsignal(number)
