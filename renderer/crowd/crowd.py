@@ -14,12 +14,14 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.clip import ClipSpec
+from renderer.crowd.bodies import build_figures
 from renderer.crowd.culling import in_view
 from renderer.crowd.eyes import CrowdEyes, DrawnEye
-from renderer.crowd.figures import Troupe, build_figures
+from renderer.crowd.figures import Troupe
+from renderer.crowd.shadows import CrowdShadows
 from renderer.crowd.shares import light_shares
 from renderer.crowd.skinned import SkinnedFigures, eyes_last, joined_triangles
-from renderer.crowd.stage import GROUND_MM, STAGE, Member, members
+from renderer.crowd.stage import STAGE, Member, members
 from renderer.light import Light
 from renderer.program import build_program
 
@@ -122,21 +124,12 @@ class Crowd:
 
     def in_view(self, world_to_clip: npt.NDArray[np.floating]) -> list[int]:
         """Return the numbers of those who are shown and may be seen in the last pose."""
-        shown = [number for number, figure in enumerate(self.figures) if figure.member.is_shown]
-        spheres = [
-            (self.figures[number].carry_spheres(self._bones[number]), self.figures[number].spheres)
-            for number in shown
+        return [
+            number
+            for number, (centres, reach) in enumerate(self.bounds_mm())
+            if self.figures[number].member.is_shown
+            and in_view(centres, reach, world_to_clip=world_to_clip).any()
         ]
-        if not shown:
-            return []
-        reached = in_view(
-            np.concatenate([centres for centres, _ in spheres]),
-            np.concatenate([rest[1] for _, rest in spheres]),
-            world_to_clip=world_to_clip,
-        )
-        ends = np.cumsum([len(centres) for centres, _ in spheres])[:-1]
-        parts = np.split(reached, ends)
-        return [number for number, part in zip(shown, parts, strict=True) if part.any()]
 
     def draw_figures(
         self,
@@ -172,24 +165,9 @@ class Crowd:
     ) -> None:
         """Draw the figures' shadows on the ground as premultiplied coverage."""
         self._skin(numbers)
-        self._shadow.set(
-            u_view_matrix=view_matrix,
-            u_projection=projection,
-            u_sun_direction=self.light.sky.sun_direction,
-            u_ground_mm=GROUND_MM,
-            u_shade=self._sun_share(),
+        self._shadows.draw(
+            numbers, sky=self.light.sky, view_matrix=view_matrix, projection=projection
         )
-        for number in numbers:
-            first, count = self._outline_ranges[number]
-            self._shadow_vertices.render(moderngl.TRIANGLES, vertices=count, first=first)
-
-    def _sun_share(self) -> float:
-        """Return the share of the sun in the light on level ground (green channel)."""
-        sky = self.light.sky
-        sun = float(sky.sun_irradiance[1] * max(sky.sun_direction[1], 0.0))
-        # Upward irradiance from the first coefficients: Ramamoorthi and Hanrahan 2001, eq. 13.
-        ambient = float(0.886227 * sky.ambient_sh[0, 1] + 1.023328 * sky.ambient_sh[1, 1])
-        return sun / max(sun + ambient, 1e-6)
 
     def _skin(self, numbers: Sequence[int]) -> None:
         missing = [number for number in numbers if number not in self._skinned]
@@ -201,7 +179,6 @@ class Crowd:
         gl, figures = self.gl, self.figures
         self._meshes = SkinnedFigures(gl, figures)
         self._program = build_program(gl, "crowd.vert", fragment="crowd.frag")
-        self._shadow = build_program(gl, "crowd_shadow.vert", fragment="crowd_shadow.frag")
         shares = [light_shares(figure, self.light.sky.sun_direction) for figure in figures]
         fixed = [np.hstack([f.body.surface, s]) for f, s in zip(figures, shares, strict=True)]
         surfaces = gl.buffer(np.concatenate(fixed).astype(np.float32).tobytes())
@@ -218,11 +195,6 @@ class Crowd:
             ],
             gl.buffer(content),
         )
-        content, self._outline_ranges = joined_triangles([b.outline for b in bodies], firsts)
-        self._shadow_vertices = gl.vertex_array(
-            self._shadow.gl_program,
-            [(self._meshes.posed, "3f 3x4", "p_world")],
-            gl.buffer(content),
-        )
+        self._shadows = CrowdShadows(gl, self._meshes)
         if static_cube:
             self._eyes = CrowdEyes(gl, figures, shares=shares, static_cube=static_cube)

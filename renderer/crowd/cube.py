@@ -50,14 +50,18 @@ class CrowdCube:
         """Draw everybody at a scene time; binds targets of its own and leaves them bound."""
         self.crowd.pose(time_s)
         bodies = self.crowd.bounds_mm()
-        shadows = [(self._on_ground(points), reach) for points, reach in bodies]
+        if not bodies and not self._drawn.any():
+            return
+        owners = np.repeat(np.arange(len(bodies)), [len(reach) for _, reach in bodies])
+        points = np.concatenate([np.zeros((0, 3)), *(centres for centres, _ in bodies)])
+        reach_mm = np.concatenate([np.zeros(0), *(reach for _, reach in bodies)])
+        on_ground = self._on_ground(points)
         stale, self._drawn = self._drawn, np.zeros_like(self._drawn)
         changed: list[tuple[int, Rectangle]] = []
         for face in range(6):
-            seen = {number: touched_tiles(*figure, face) for number, figure in enumerate(bodies)}
-            cast = {number: touched_tiles(*figure, face) for number, figure in enumerate(shadows)}
-            for tiles in (*seen.values(), *cast.values()):
-                self._drawn[face] |= tiles
+            seen = tiles_of_each(points, reach_mm, face, owners=owners, count=len(bodies))
+            cast = tiles_of_each(on_ground, reach_mm, face, owners=owners, count=len(bodies))
+            self._drawn[face] = (seen | cast).any(axis=0)
             rectangles = self._rectangles(stale[face] | self._drawn[face])
             changed += [(face, rectangle) for rectangle in rectangles]
             if rectangles:
@@ -98,14 +102,19 @@ class CrowdCube:
 
 def touched_tiles(points: Floats, reach_mm: Floats, face: int) -> Tiles:
     """Return which tiles (row, column) of a face spheres around points (n, 3) may touch."""
+    owners = np.zeros(len(points), dtype=np.int64)
+    return np.asarray(tiles_of_each(points, reach_mm, face, owners=owners, count=1)[0])
+
+
+def tiles_of_each(
+    points: Floats, reach_mm: Floats, face: int, *, owners: npt.NDArray[np.int64], count: int
+) -> Tiles:
+    """Return which tiles (owner, row, column) of a face the spheres of each owner may touch."""
     right, down, forward = (points @ FACE_AXES[face]).T
-    tiles = np.zeros((TILES, TILES), dtype=bool)
     # A sphere touches the face's pyramid only if it reaches over all four of its side planes.
     slack = reach_mm * 2**0.5
     inside = (forward - np.abs(right) > -slack) & (forward - np.abs(down) > -slack)
     inside &= forward > NEAR_MM - reach_mm
-    if not inside.any():
-        return tiles
     near = np.maximum(forward - reach_mm, NEAR_MM)[inside]
     far = np.maximum(forward + reach_mm, NEAR_MM)[inside]
     low, high = [], []
@@ -113,11 +122,19 @@ def touched_tiles(points: Floats, reach_mm: Floats, face: int) -> Tiles:
         start, end = across - reach_mm[inside], across + reach_mm[inside]
         low.append(np.minimum(start / near, start / far))
         high.append(np.maximum(end / near, end / far))
-    first = np.floor((np.clip(low, -1, 1) * 0.5 + 0.5) * TILES).astype(int).T
-    last = np.ceil((np.clip(high, -1, 1) * 0.5 + 0.5) * TILES).astype(int).T
-    for (left, bottom), (end_x, end_y) in zip(first.tolist(), last.tolist(), strict=True):
-        tiles[bottom:end_y, left:end_x] = True
-    return tiles
+    left, bottom = np.floor((np.clip(low, -1, 1) * 0.5 + 0.5) * TILES).astype(int)
+    end_x, end_y = np.ceil((np.clip(high, -1, 1) * 0.5 + 0.5) * TILES).astype(int)
+    # Rectangles are summed up from their corners: steps in at one end, out at the other.
+    steps = np.zeros((count, TILES + 1, TILES + 1), dtype=np.int64)
+    owner = owners[inside]
+    for y, x, step in (
+        (bottom, left, 1),
+        (bottom, end_x, -1),
+        (end_y, left, -1),
+        (end_y, end_x, 1),
+    ):
+        np.add.at(steps, (owner, y, x), step)
+    return np.asarray(steps.cumsum(axis=1).cumsum(axis=2)[:, :TILES, :TILES] > 0)
 
 
 def cover(tiles: Tiles) -> list[Rectangle]:
@@ -137,5 +154,5 @@ def cover(tiles: Tiles) -> list[Rectangle]:
     return found
 
 
-def _present(tiles: dict[int, Tiles]) -> list[int]:
-    return [number for number, touched in tiles.items() if touched.any()]
+def _present(tiles: Tiles) -> list[int]:
+    return [int(number) for number in np.flatnonzero(tiles.any(axis=(1, 2)))]

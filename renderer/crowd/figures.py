@@ -10,23 +10,15 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from renderer.body.rig import Rig
-from renderer.cache import cached_arrays
-from renderer.crowd.cast import TEMPLATES
-from renderer.crowd.figure import BONES, Body, build_body
+from renderer.crowd.figure import BONES, Body
 from renderer.crowd.gait import stride_s
 from renderer.crowd.motion import Places, place, stand, walk, wave
-from renderer.crowd.people import Person
-from renderer.crowd.recolour import recoloured
 from renderer.crowd.skeletons import Skeletons, Turns, turns_about
-from renderer.crowd.sockets import awake
 from renderer.crowd.stage import GROUND_MM, Member
 
 Floats = npt.NDArray[np.float64]
 
 _SPHERES_PER_BONE: Final = 4
-_FLOAT_FIELDS: Final = ("positions_mm", "normals", "surface", "weights", "heads_mm", "tails_mm")
-_WHOLE_FIELDS: Final = ("bones", "triangles", "outline", "parts", "parents")
 
 
 @dataclass(frozen=True)
@@ -145,51 +137,3 @@ def _places(figures: Sequence[Figure], time_s: float) -> Places:
         heading_deg=np.array([figure.member.heading_deg for figure in figures]),
         scale=np.array([figure.scale for figure in figures]),
     )
-
-
-def build_figures(members: Sequence[Member], *, is_awake: bool = False) -> tuple[Figure, ...]:
-    """Return the members with their meshes, numbered for shared buffers."""
-    worn = dict.fromkeys(member.person.body for member in members)
-    bodies = {name: cached_body(TEMPLATES[name]) for name in worn}
-    if is_awake:
-        bodies = {name: awake(body) for name, body in bodies.items()}
-    figures: list[Figure] = []
-    first = 0
-    for seed, member in enumerate(members):
-        template = TEMPLATES[member.person.body]
-        body = recoloured(bodies[template.name], template, person=member.person)
-        scale = member.person.stature_mm / template.stature_mm
-        figures.append(Figure(member, body, first, seed, scale, is_awake))
-        first += len(body.positions_mm)
-    return tuple(figures)
-
-
-def cached_body(person: Person) -> Body:
-    """Return a person's mesh from the disk cache, or build and keep it."""
-    kept = cached_arrays(f"crowd body {person}", lambda: _body_arrays(build_body(person)))
-    floats = {name: kept[name].astype(np.float64) for name in _FLOAT_FIELDS}
-    whole = {name: kept[name].astype(np.int64) for name in _WHOLE_FIELDS}
-    # Bodies are skinned by their four strongest bones, so the rig needs no weights of its own.
-    rig = Rig(
-        BONES,
-        whole.pop("parents"),
-        floats.pop("heads_mm"),
-        floats.pop("tails_mm"),
-        np.zeros((0, len(BONES)), dtype=np.float32),
-    )
-    return Body(
-        positions_mm=floats["positions_mm"],
-        normals=floats["normals"],
-        surface=floats["surface"],
-        weights=floats["weights"],
-        bones=whole["bones"],
-        triangles=whole["triangles"],
-        outline=whole["outline"],
-        parts=whole["parts"],
-        rig=rig,
-    )
-
-
-def _body_arrays(body: Body) -> dict[str, npt.NDArray[np.generic]]:
-    names = (*_FLOAT_FIELDS, *_WHOLE_FIELDS)
-    return {name: getattr(body if hasattr(body, name) else body.rig, name) for name in names}

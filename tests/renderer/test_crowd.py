@@ -5,9 +5,9 @@ import pytest
 from renderer.body.rig import skin_vertices
 from renderer.camera import camera_radius_mm, views
 from renderer.clip import DISTANCES, ClipSpec
+from renderer.crowd.bodies import build_figures
 from renderer.crowd.crowd import Crowd
 from renderer.crowd.figure import BONES
-from renderer.crowd.figures import build_figures
 from renderer.crowd.people import PEOPLE
 from renderer.crowd.shares import light_shares
 from renderer.crowd.stage import GROUND_MM, STAGE

@@ -11,9 +11,10 @@ import pytest
 from renderer.camera import LIMBUS_Z_MM, iris_px, look_at, perspective, views
 from renderer.clip import ClipSpec
 from renderer.crowd import gaze
+from renderer.crowd.bodies import build_figures
 from renderer.crowd.eye_groups import CAUSTIC_STEP_DEG, IRISES, caustic_layers, crowd_detail
 from renderer.crowd.eyes import PAINTED_PX
-from renderer.crowd.figures import Figure, Troupe, build_figures
+from renderer.crowd.figures import Figure, Troupe
 from renderer.crowd.formation import CAMERA_MM, formation, group_view
 from renderer.crowd.gaze import CrowdGaze
 from renderer.crowd.sockets import AWAKE_MM, sockets

@@ -8,11 +8,12 @@ import pytest
 
 from renderer.camera import camera_radius_mm, views
 from renderer.clip import CROWDS, DISTANCES, ClipSpec
+from renderer.crowd.bodies import build_figures
 from renderer.crowd.cast import CAST, TEMPLATES
 from renderer.crowd.crowd import Crowd
 from renderer.crowd.culling import in_view
 from renderer.crowd.eye_groups import IRISES
-from renderer.crowd.figures import Figure, Troupe, build_figures
+from renderer.crowd.figures import Figure, Troupe
 from renderer.crowd.stage import CIRCLE, STAGE, members
 from renderer.detail import Detail
 from renderer.light import Light, Sky

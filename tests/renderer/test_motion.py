@@ -5,8 +5,8 @@ import pytest
 
 from renderer.body.makehuman import base_mesh
 from renderer.body.rig import Rig, bone_transforms
+from renderer.crowd.bodies import cached_body
 from renderer.crowd.figure import Body
-from renderer.crowd.figures import cached_body
 from renderer.crowd.gait import HIP, KNEE, WALK_SPEED_MM_S, stride_s
 from renderer.crowd.motion import Places, place, stand, walk, wave
 from renderer.crowd.people import PEOPLE
