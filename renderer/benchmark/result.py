@@ -70,7 +70,10 @@ class Work:
 
 @dataclass(frozen=True, kw_only=True)
 class Stage:
-    """Seconds that one stage of setting up took, with an empty cache (cold) or a full one."""
+    """Seconds that one stage of setting up took.
+
+    ``cache`` is "cold" (empty), "warm" (of the start before) or "as it is" (the user's).
+    """
 
     lod: str
     cache: str

@@ -26,9 +26,9 @@ MEGA: Final = 1e6
 
 
 def startup_steps(*, is_quick: bool) -> list[Step]:
-    """Return one step: a cold start, then a warm one; in a hurry one with the user's own cache."""
+    """Return one step: a cold start, then a warm one; in a hurry one with the cache as it is."""
     if is_quick:
-        return [Step(STARTUP, "warm", 25.0, _start_warm)]
+        return [Step(STARTUP, "as it is", 25.0, _start_as_it_is)]
     return [Step(STARTUP, "cold, then warm", 200.0, _start)]
 
 
@@ -44,8 +44,8 @@ def _start(stand: Stand, bench: Bench) -> None:
             _add(bench, cache, in_fresh_process(LOD, stand.size, caches_in(Path(folder))))
 
 
-def _start_warm(stand: Stand, bench: Bench) -> None:
-    _add(bench, "warm", in_fresh_process(LOD, stand.size, {}))
+def _start_as_it_is(stand: Stand, bench: Bench) -> None:
+    _add(bench, "as it is", in_fresh_process(LOD, stand.size, {}))
 
 
 def _add(bench: Bench, cache: str, told: Mapping[str, Any]) -> None:

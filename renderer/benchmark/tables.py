@@ -152,6 +152,8 @@ def _startup(bench: Bench) -> list[Table]:
             ("sum", *(f"{sum(cell[name, cache] for name in stages):.2f}" for cache in caches))
         )
     note = "Seconds per stage with empty caches (cold) and full ones (warm); two ultra eyes."
+    if caches == ("as it is",):
+        note = "Seconds per stage with the user's cache as it is; two ultra eyes."
     return [Table("Start", note, ("", *caches), rows)]
 
 

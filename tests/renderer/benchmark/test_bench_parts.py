@@ -142,7 +142,7 @@ def test_progress_is_told_before_each_step(monkeypatch: pytest.MonkeyPatch) -> N
 def test_a_fresh_process_sets_up_and_weighs_a_lod() -> None:
     told = in_fresh_process("low", (64, 64), {})
     assert list(told["seconds"]) == [
-        "modules", "context", "surroundings", "head", "light", "crowd", "eyes", "first frame",
+        "modules", "context", "surroundings", "head", "light", "crowd", "targets", "first frame",
         "second frame",
     ]  # fmt: skip
     assert all(seconds > 0 for seconds in told["seconds"].values())
