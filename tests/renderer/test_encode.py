@@ -9,7 +9,7 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 
-from renderer.encode import decode, open_encoder
+from renderer.encode import EncodingError, decode, open_encoder
 
 COLOURS = [(200, 120, 60), (128, 128, 128), (40, 60, 90), (235, 225, 215)]
 
@@ -60,3 +60,20 @@ def test_the_same_frames_give_the_same_file(clip: Path, tmp_path: Path) -> None:
 def test_a_frame_that_is_not_there_is_an_error_with_the_files_name(clip: Path) -> None:
     with pytest.raises(ValueError, match=r"patches\.mp4: holds 1 of the 2 frames asked for"):
         decode(clip, [6, 7], size=(96, 54))
+
+
+def test_an_encoder_that_stops_says_which_file_and_why(tmp_path: Path) -> None:
+    lost = tmp_path / "nowhere" / "clip.mp4"
+    with (
+        pytest.raises(EncodingError, match=r"clip\.mp4: FFmpeg stopped: .*No such file"),
+        open_encoder(lost, fps=30, size=(1920, 1080)) as encoder,
+    ):
+        encoder.write(np.zeros((1080, 1920, 3), np.uint8))
+
+
+def test_a_frame_of_another_size_is_refused(tmp_path: Path) -> None:
+    with (
+        pytest.raises(ValueError, match=r"a frame is \(64, 64, 3\) uint8, not \(54, 96, 3\) uint8"),
+        open_encoder(tmp_path / "clip.mp4", fps=30, size=(96, 54)) as encoder,
+    ):
+        encoder.write(np.zeros((64, 64, 3), np.uint8))
