@@ -9,6 +9,8 @@ from typing import Any
 from fastapi import APIRouter, HTTPException
 from fastapi.responses import HTMLResponse, Response
 
+from renderer.clip import ClipSpec
+from renderer.detail import EFFECTS
 from renderer.manifest import ClipRecord
 from study.data import jobs
 from study.data.jobs import Job
@@ -95,21 +97,36 @@ def one(here: Here, researcher: ResearcherHere, clip_id: str) -> Response:
         "researcher/clip.html",
         **frame(study, researcher, "/clips", heading),
         shown=shown,
-        levels=_levels(shown),
-        facts=_facts(shown),
+        levels=levels_of(shown.wanted.spec),
+        facts=facts_of(shown.wanted.spec),
         measured=_measured(shown.record) if shown.record else [],
     )
 
 
-def _levels(shown: Shown) -> list[tuple[str, str, str]]:
-    """Return effect, level on the left, level on the right."""
-    left, right = shown.wanted.spec.left.levels(), shown.wanted.spec.right.levels()
-    return [(effect, left[effect], right[effect]) for effect in left]
+def levels_of(spec: ClipSpec) -> list[tuple[str, str, str]]:
+    """Return effect, level on the left and on the right; eyes that switch have theirs by size."""
+    left, right = (
+        detail.levels() if switching == "fixed" else dict.fromkeys(EFFECTS, "by size")
+        for detail, switching in (
+            (spec.left, spec.left_switching),
+            (spec.right, spec.right_switching),
+        )
+    )
+    return [(effect, left[effect], right[effect]) for effect in EFFECTS]
 
 
-def _facts(shown: Shown) -> list[tuple[str, Any]]:
-    spec = shown.wanted.spec.to_dict()
-    return [(name, value) for name, value in spec.items() if name not in ("left", "right")]
+def facts_of(spec: ClipSpec) -> list[tuple[str, Any]]:
+    """Return what else the frames depend on, by the spec's names."""
+    facts = [
+        (name, value)
+        for name, value in spec.to_dict().items()
+        if name not in ("left", "right", "lod_policy")
+    ]
+    limits = [
+        f"{step.lod} up to {step.up_to_iris_px:g} px" if step.up_to_iris_px else step.lod
+        for step in (spec.lod_policy.steps if spec.lod_policy else ())
+    ]
+    return [*facts, ("lod_policy", ", ".join(limits))] if limits else facts
 
 
 def _measured(record: ClipRecord) -> list[tuple[str, str]]:
