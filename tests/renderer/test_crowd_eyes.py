@@ -19,10 +19,11 @@ from renderer.crowd.formation import CAMERA_MM, formation, group_view
 from renderer.crowd.gaze import CrowdGaze
 from renderer.crowd.sockets import AWAKE_MM, sockets
 from renderer.crowd.stage import members
-from renderer.detail import Detail
+from renderer.detail import STANDARD_LODS, Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.caustics import caustic_map
 from renderer.group import GroupRenderer
+from renderer.lod_choice import LodPolicy, LodStep
 from renderer.lod_policy import default_policy
 
 LOW = Detail.uniform("low")
@@ -147,8 +148,11 @@ def test_the_first_frame_that_needs_a_lod_is_like_those_after_it(group: GroupRen
 
 @pytest.mark.parametrize(("distance_mm", "lod"), [(1300, "medium"), (260, "high"), (90, "ultra")])
 def test_every_lod_draws_the_eyes_of_whoever_comes_near(
-    group: GroupRenderer, distance_mm: float, lod: str
+    group: GroupRenderer, monkeypatch: pytest.MonkeyPatch, distance_mm: float, lod: str
 ) -> None:
+    limits = zip(STANDARD_LODS, (14.0, 48.0, 200.0, None), strict=True)
+    steps = tuple(LodStep(name, Detail.uniform(name), limit) for name, limit in limits)
+    monkeypatch.setattr("renderer.crowd.eyes.default_policy", lambda: LodPolicy(steps))
     crowd = group.crowd
     crowd.pose(1.0)
     placed, _ = crowd._eyes.gaze.placed(crowd._bones)
