@@ -22,6 +22,7 @@ WALL, QUERY = "wall time", "timer queries"
 WARM_UP: Final = 1  # the first frame builds the eyes and compiles their shaders
 # Over the orbit, from the side to the front and back: costs follow what is seen.
 AZIMUTHS_DEG: Final = (-50.0, 35.0, -20.0, 5.0, 50.0, -35.0, 20.0, -5.0, 0.0)
+NUDGE_DEG: Final = 0.01  # between the frames of a round: nothing kept for a camera is there yet
 FPS: Final = 30
 
 Timer = Callable[[FrameRenderer, float, float], float]
@@ -55,17 +56,19 @@ def timer_of(gl: moderngl.Context, clock: str) -> Timer:
 def interleaved(
     variants: Sequence[FrameRenderer], *, rounds: int, timer: Timer
 ) -> list[list[float]]:
-    """Time variants in turn, A B A B: what slows the machine for a while slows them all.
+    """Time variants in turn, A B, B A, A B: what slows the machine for a while slows them all.
 
-    Returns a list of ``rounds`` milliseconds per variant. Within a round all have the same camera;
-    time runs on from frame to frame, because people who stand still would cost nothing.
+    Returns a list of ``rounds`` milliseconds per variant. Within a round all have the same camera
+    but for NUDGE_DEG; time runs on from frame to frame, because people who stand still would cost
+    nothing. Every other round runs backwards, so that nobody is always first.
     """
     times: list[list[float]] = [[] for _ in variants]
     step = 0
     for number in range(-WARM_UP, rounds):
         azimuth_deg = AZIMUTHS_DEG[number % len(AZIMUTHS_DEG)]
-        for place, frames in enumerate(variants):
-            ms = timer(frames, azimuth_deg, step / FPS)
+        order = list(enumerate(variants))
+        for turn, (place, frames) in enumerate(order if number % 2 == 0 else order[::-1]):
+            ms = timer(frames, azimuth_deg + NUDGE_DEG * turn, step / FPS)
             step += 1
             if number >= 0:
                 times[place].append(ms)
