@@ -16,6 +16,18 @@ out vec3 v_p_eye;
 out vec3 v_n_eye;
 flat out int v_eye;
 
+const float WHITE_FROM = 0.61;   // radians from the gaze where the globe is white and round
+const float WHITE_SHARE = 0.72;
+
+// The point of the globe that stands for one in its light: the white turns away from the viewer as
+// slowly as the wider socket does, or its corners would mirror the ground.
+vec3 lit_as(vec3 p_eye) {
+    float angle = atan(length(p_eye.xy), p_eye.z);
+    if (angle < WHITE_FROM) return p_eye;
+    angle = WHITE_FROM + WHITE_SHARE * (angle - WHITE_FROM);
+    return length(p_eye) * vec3(normalize(p_eye.xy) * sin(angle), cos(angle));
+}
+
 // The place over the socket of a point of the globe, in eye space.
 vec3 in_socket(vec3 p_eye, float socket_mm) {
     float radius = length(p_eye), around = length(p_eye.xy);
@@ -27,8 +39,8 @@ vec3 in_socket(vec3 p_eye, float socket_mm) {
 
 void main() {
     v_eye = u_first_eye + gl_InstanceID;
-    v_p_eye = in_position;
-    v_n_eye = in_normal;
+    v_p_eye = lit_as(in_position);
+    v_n_eye = in_position == v_p_eye ? in_normal : normalize(v_p_eye);
     CrowdEye eye = u_crowd_eyes[v_eye];
     vec4 p_world = eye.eye_to_world * vec4(in_socket(in_position, eye.facts.y), 1.0);
     gl_Position = u_projection * u_view_matrix * p_world;
