@@ -55,7 +55,9 @@ def build_scene(gl: moderngl.Context, spec: ClipSpec, *, last: Scene | None = No
     same = [a == b for a, b in zip(key, last.key, strict=True)] if last else [False] * 3
     surroundings = last.surroundings if last and same[0] else Surroundings(gl, spec)
     head = last.head if last and same[1] else Head(gl, spec)
-    light = build_light(gl, surroundings.sky, head)
+    # Another object of the same light would make the head bake it anew.
+    is_lit = last is not None and same[0] and same[1]
+    light = last.light if last and is_lit else build_light(gl, surroundings.sky, head)
     if last and same[0] and same[2]:
         crowd = last.crowd
         crowd.light = light  # the same sun; the head's shadow may be another

@@ -51,5 +51,6 @@ def test_only_what_a_clip_changes_is_built_anew(
     scene = scenes.build_scene(gl, replace(SPEC, **changed), last=last)
     assert {name for name in PARTS if getattr(scene, name) is not getattr(last, name)} == rebuilt
     assert scene.light == (scene.surroundings.sky, scene.head)
+    assert (scene.light is last.light) == (not rebuilt & {"surroundings", "head"})
     assert scene.crowd.light is scene.light
     assert (scene.key == last.key) == (not rebuilt)
