@@ -17,17 +17,22 @@ from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim_curves, soft_max
 from renderer.head.lid_shell import on_globe
 
 CARUNCLE_END_MM: Final = -7.5  # towards the pupil: under the globe's surface from here on
-COVER_MM: Final = (-8.2, -9.2)  # the conjunctiva fades in over the sclera between these
+COVER_MM: Final = (-8.1, -9.4)  # the conjunctiva fades in over the sclera between these
 BRIDGE_MM: Final = 3.6  # how softly it leaves the globe: a valley would show the globe's outline
-PLICA_MM: Final = -11.35  # free edge of the fold, a crescent that embraces the cornea
-PLICA_EDGE_MM: Final = 0.55  # from its foot on the globe to its height ...
-PLICA_WIDTH_MM: Final = 2.1  # ... and on from there, down to the caruncle's foot
-BUMP_MM: Final = (-14.35, 1.45)  # the caruncle's middle and half width along x
+PLICA_MM: Final = -11.2  # free edge of the fold, a crescent that embraces the cornea
+PLICA_EDGE_MM: Final = 0.4  # from its foot on the globe to its height ...
+PLICA_WIDTH_MM: Final = 0.95  # ... and on from there, down to the lake before the caruncle
+PLICA_RISE_MM: Final = 0.42
+BUMP_MM: Final = (-14.1, 1.8)  # the caruncle's middle and half width along x
+BUMP_RISE_MM: Final = 1.5
+LAKE_MM: Final = 0.35  # depth of the tears around its foot
+GRANULE_MM: Final = 0.06  # height of its granules, which lie on lobes twice as high
+LATERAL_COVER_MM: Final = (10.5, 11.4)  # off the gaze axis: where the outer sheet fades in
 MEMBRANE_START_MM: Final = 8.6
 DRAWN: Final = (0.28, 0.12)  # share of the cornea's way to nose and temple that drags the fold
 TUCKED_MM: Final = 0.3  # of the sheets' edges, below the lids
 FULL_OPENING_MM: Final = 3.0  # of the lids, at which the caruncle stands out fully
-CARUNCLE_GRID: Final = (76, 36)  # points from canthus inwards, and from lid to lid
+CARUNCLE_GRID: Final = (112, 44)  # points from canthus inwards, and from lid to lid
 MEMBRANE_GRID: Final = (22, 16)
 
 
@@ -55,10 +60,11 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     x, y, z = (sheet.points_mm[..., axis] for axis in range(3))
     between = np.sin(np.pi * b)
     room = _ease(sheet.opening_mm / FULL_OPENING_MM)
-    crescent = x - drawn + 0.9 * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
-    middle = BUMP_MM[0] + 0.3 * drawn
-    hump = room * np.exp(-(((x - middle) / BUMP_MM[1]) ** 2) - ((b - 0.47) / 0.30) ** 2)
-    fold, behind_edge = _plica(x - drawn, b)
+    crescent = x - drawn + 0.6 * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
+    foot = _caruncle_foot(x - 0.3 * drawn, b)
+    dome = room * _dome(foot)
+    lake = room * np.exp(-(((foot - 1.12) / 0.2) ** 2)) * between
+    fold, way = _plica(x - drawn, b)
     sag = 0.75 * between * _ease((x - MEDIAL_MM[0]) / 1.5)
     globe = on_globe(sheet.points_mm[..., :2], pose)
     off = _ease((-7.9 - crescent) / 1.4)
@@ -67,31 +73,45 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     bridge = BRIDGE_MM * room * between * off
     base = soft_max(globe + over, z - sag, 0.05 + bridge) - 0.6 * under
     lobes, granules = _lobes(x, y)
-    bumps = 1.05 * hump + 0.11 * lobes * np.sqrt(hump) + 0.5 * room * fold * between
+    bumps = BUMP_RISE_MM * dome + GRANULE_MM * (2 * lobes + granules) * np.sqrt(dome)
+    bumps += PLICA_RISE_MM * room * fold * between - LAKE_MM * lake
     sheet.points_mm[..., 2] = base + bumps
     cover = _ease((COVER_MM[0] - crescent) / (COVER_MM[0] - COVER_MM[1]))
     cover = np.maximum(cover, _beside_globe(sheet.points_mm))
-    white = _ease((crescent + 13.0) / 2.0) * (1 - 0.62 * behind_edge)
+    # White before the fold, pinker on it, red in the lake behind.
+    white = 1.0 - 0.45 * _ease(way / 0.7 + 0.6) - 0.45 * _ease((way - 0.8) / 0.7)
+    pink = _ease(2.5 * dome)
     return Corner(
         sheet.points_mm.reshape(-1, 3),
         _quads(CARUNCLE_GRID),
-        np.clip(1.25 * hump, 0, 1).ravel(),
-        (room * np.clip(1.6 * hump + 0.35 * behind_edge, 0, 1)).ravel(),
-        np.clip(0.95 * white + 0.30 * granules * hump, 0, 1).ravel(),
+        pink.ravel(),
+        (room * pink).ravel(),
+        np.clip(white * (1 - pink) + 0.22 * np.clip(granules, 0, 1) * pink, 0, 1).ravel(),
         cover.ravel(),
     )
 
 
-def _plica(x: Floats, b: Floats) -> tuple[Floats, Floats]:
-    """Return the fold's height, 0 to 1, and 1 on and behind its free edge, 0 in front.
+def _caruncle_foot(x: Floats, b: Floats) -> Floats:
+    """Return 0 at the caruncle's middle, 1 at its foot, more beyond."""
+    middle, half = BUMP_MM
+    return np.asarray(np.hypot((x - middle) / half, (b - 0.47) / 0.47))
 
-    The edge looks towards the cornea; behind it the fold sinks slowly to the caruncle's foot.
+
+def _dome(foot: Floats) -> Floats:
+    """Return the height, 0 to 1, of a round top that leaves its foot at an angle."""
+    t = np.clip(1 - foot * foot, 0.0, 1.0)
+    return np.asarray(t * (2 - t))
+
+
+def _plica(x: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Return the fold's height, 0 to 1, and the way in mm from its free edge towards the nose.
+
+    The edge looks towards the cornea; behind it the fold sinks to the lake of tears.
     """
-    way = PLICA_MM + 0.5 * (2 * b - 1) ** 2 - x  # from the edge towards the nose
+    way = PLICA_MM + 0.7 * (2 * b - 1) ** 2 - x
     rise = _ease(way / PLICA_EDGE_MM + 0.5)
-    redder = _ease(way / 1.6 + 0.6)
     fall = _ease((way - 0.5 * PLICA_EDGE_MM) / PLICA_WIDTH_MM)
-    return rise * (1 - fall) - 0.35 * np.exp(-(((way - 2.0) / 0.45) ** 2)), redder
+    return rise * (1 - fall), way
 
 
 def _drawn_mm(pose: LidPose) -> float:
@@ -106,11 +126,11 @@ def _beside_globe(points: Floats) -> Floats:
 
 
 def _lobes(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """Return the caruncle's lobes of a millimetre, about 0, and its pale granules, 0 to 1."""
+    """Return the caruncle's lobes of a millimetre, about 0, and its pale granules, too."""
     u, v = x + 0.13 * np.sin(4.1 * y), y + 0.15 * np.sin(3.3 * x + 1.0)
     lobes = np.sin(5.1 * u + 2.3 * v + 0.4) * np.sin(4.7 * v - 2.9 * u)
     granules = np.sin(8.3 * u - 3.1 * v) * np.sin(7.7 * v + 4.3 * u + 1.0)
-    return np.asarray(lobes), np.clip(granules, 0.0, 1.0) ** 2
+    return np.asarray(lobes), np.asarray(granules)
 
 
 def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
@@ -120,6 +140,7 @@ def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
     globe = on_globe(sheet.points_mm[..., :2], pose)
     under = _ease((a - 0.85) / 0.15)
     between = np.sin(np.pi * b) * _ease(sheet.opening_mm)
+    start, end = LATERAL_COVER_MM
     hollow = sheet.points_mm[..., 2] - 0.35 * between
     sheet.points_mm[..., 2] = soft_max(globe + 0.05, hollow, 0.05 + between) - 0.5 * under
     return Corner(
@@ -127,8 +148,8 @@ def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
         _quads(MEMBRANE_GRID)[:, ::-1],
         np.zeros(a.size),
         np.zeros(a.size),
-        (0.9 * _ease(a / 0.5)).ravel(),
-        _ease((np.hypot(*np.moveaxis(sheet.points_mm[..., :2], -1, 0)) - 9.4) / 1.2).ravel(),
+        _ease(a / 0.45).ravel(),
+        _ease((np.hypot(*np.moveaxis(sheet.points_mm[..., :2], -1, 0)) - start) / (end - start)).ravel(),
     )
 
 

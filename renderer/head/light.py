@@ -15,6 +15,7 @@ import numpy as np
 
 from renderer.body.makehuman import Floats
 from renderer.cache import cached_arrays
+from renderer.head.corner_light import light_corner
 from renderer.head.face_mesh import FaceMesh, seam
 from renderer.head.skin_light import SkinLight, light_skin
 from renderer.head.sky_visibility import Draw, Region, Visible, look_up, sky_visibility
@@ -93,6 +94,19 @@ def light_surfaces(
     lights: dict[str, SkinLight] = {}
     for name, item in surfaces.items():
         lifted = item.points_mm + SUN_LIFT_MM * (item.normals + light.sky.sun_direction)
+        sun = look_up(depth, matrix, lifted, radius_px=2).astype(float)
+        if name.startswith("corner"):
+            eye = int(name[-1])
+            lights[name] = light_corner(
+                item.points_mm,
+                item.normals,
+                item.triangles,
+                eye=eye,
+                pose=face.lids[eye].pose,
+                sky=light.sky,
+                sun=sun,
+            )
+            continue
         lights[name] = light_skin(
             item.points_mm,
             item.normals,
@@ -100,7 +114,7 @@ def light_surfaces(
             # Wool has no scattered sun to bake: its shader looks the shadow up per pixel.
             sky=light.sky if item.is_skin else without_sun,
             open_sky=free[name],
-            sun=look_up(depth, matrix, lifted, radius_px=2).astype(float),
+            sun=sun,
         )
     for eye in (0, 1):
         join = seam(face.patches[eye], face.fine)

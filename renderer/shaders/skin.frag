@@ -56,6 +56,7 @@ void main() {
     float conjunctiva = VESSELS * clamp(-v_lid.w, 0.0, 1.0) * (1.0 - grain);
     share.x *= 1.0 + 1.6 * colour.a;
     float shown = clamp(v_lid.y, 0.0, 1.0);
+    if (v_lid.w < 0.0) face = vec4(1.0 - face.xy, 1.0, face.a);  // granules stand out, pores do not
     vec2 slope = ((face.xy - 0.5) * share.x + (crepe.xy - 0.5) * share.y) * (2.0 * u_slope_range * shown);
     float rugged = shown * min(share.x + share.y, 1.0) * (1.0 - 0.4 * grain);
     float open = 1.0 - rugged * (1.0 - mix(face.z, crepe.z, thin));

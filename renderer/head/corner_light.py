@@ -1,0 +1,122 @@
+"""Light on the conjunctiva in the eyes' corners, baked per vertex: the globe's own, past the lids.
+
+Pure numpy. What the lids and their lashes take is summed as the globe's shaders sum it
+(``shaders/lid_sky.glsl``, ``lids.glsl``), so that no edge of shade shows where the sheet leaves
+the globe.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from renderer.body.makehuman import Floats, Indices
+from renderer.eye.anatomy import GLOBE_RADIUS_MM
+from renderer.eye.lids import LidRims
+from renderer.head.face_mesh import to_patch
+from renderer.head.lid_pose import LidPose
+from renderer.head.lid_rims import rim_curves
+from renderer.head.skin_light import SkinLight, scatter, sky_radiance
+from renderer.light import Sky
+
+LID_FRONT_MM: Final = (1.4, 0.4)  # the lids' middle surface over globe, and over what stands out
+OUT_MM: Final = (12.3, 15.0)  # from the globe's centre: what stands out between the lids
+SOFTNESS_MM: Final = (0.8, 0.35)  # of the lids' shade from the sky, and from the sun ...
+SOFTENING: Final = 0.12  # ... and per mm of way
+RAYS: Final = 64
+LID_REFLECTANCE: Final = (0.38, 0.24, 0.18)
+LASH_REFLECTANCE: Final = (0.02, 0.012, 0.008)
+LASH_REACH_MM: Final = 7.2
+LASH_CURL: Final = 0.09  # height over the rim per square of the way, 1/mm
+LASH_COVER: Final = 0.324  # of lashes seen square on: 2 x 0.9 x 0.03 mm x 6 a mm
+LASH_ENDS_MM: Final = (10.7, 12.2)  # off the middle
+SCATTER_WRAP: Final = (0.30, 0.17, 0.12)  # as in ``sclera.glsl``
+SHADE_SEEP: Final = (0.72, 0.98, 1.05)
+
+
+def light_corner(
+    points_mm: Floats,
+    normals: Floats,
+    triangles: Indices,
+    *,
+    eye: int,
+    pose: LidPose,
+    sky: Sky,
+    sun: Floats,
+) -> SkinLight:
+    """Return the light on one eye's corners; ``sun`` (n,) is how much of it the head leaves."""
+    side = np.array([1.0 if eye else -1.0, 1.0, 1.0])  # patch space has the temple at +x
+    rims = LidRims(*rim_curves(pose, samples=513))
+    places = to_patch(points_mm, eye)
+    rays = _hemispheres(normals)
+    towards = rays * side
+    every = np.broadcast_to(places[:, None], rays.shape).reshape(-1, 3)
+    lids, lashes = past_lids(every, towards.reshape(-1, 3), rims, SOFTNESS_MM[0])
+    free = sky_radiance(sky, rays.reshape(-1, 3))
+    around = 0.5 * sky_radiance(sky, np.array([0.0, 0.0, 1.0]))
+    behind = lashes[:, None] * free + (1 - lashes[:, None]) * (LASH_REFLECTANCE * around)
+    kept = lids[:, None] * behind + (1 - lids[:, None]) * (LID_REFLECTANCE * around)
+    ambient = kept.reshape(*rays.shape).mean(axis=1)
+    share = (lids * lashes).reshape(rays.shape[:2]).mean(axis=1)
+
+    to_sun = np.broadcast_to(sky.sun_direction * side, places.shape)
+    sunny, hairs = past_lids(places, to_sun, rims, SOFTNESS_MM[1])
+    reaching = sun * sunny * hairs
+    wrap = np.array(SCATTER_WRAP)
+    cosine = (normals @ sky.sun_direction)[:, None]
+    wrapped = np.maximum((cosine + wrap) / (1 + wrap) ** 2, 0.0)
+    direct = sky.sun_irradiance * reaching[:, None] ** np.array(SHADE_SEEP) * wrapped
+    diffuse = scatter(points_mm, triangles, ambient + direct / np.pi)
+    return SkinLight(diffuse, share, reaching)
+
+
+def past_lids(
+    points: Floats, directions: Floats, rims: LidRims, softness_mm: float
+) -> tuple[Floats, Floats]:
+    """Return what shares (n,) of rays from points (n, 3) pass the lids, and their lashes.
+
+    ``rims`` and points share a space whose origin is the globe's centre.
+    """
+    along = (points * directions).sum(axis=-1)
+    square = (points * points).sum(axis=-1)
+    # Off the globe the lids lie further out, too.
+    front = np.maximum(np.sqrt(square), GLOBE_RADIUS_MM)
+    front = front + np.interp(front, OUT_MM, LID_FRONT_MM)
+    reach = np.sqrt(np.maximum(along * along - square + front * front, 0.0)) - along
+    at = points + reach[:, None] * directions
+    upper, lower = (
+        np.interp(at[:, 0], curve[:, 0], curve[:, 1]) for curve in (rims.upper_mm, rims.lower_mm)
+    )
+    room = np.minimum(upper - at[:, 1], at[:, 1] - lower)
+    soft = softness_mm + SOFTENING * reach
+    share = np.clip(0.5 + room / (2 * soft), 0.0, 1.0)
+    return share * share * (3 - 2 * share), 1.0 - _lash_cover(at, directions, upper - at[:, 1])
+
+
+def _lash_cover(at: Floats, directions: Floats, room: Floats) -> Floats:
+    """Return the share (n,) that lashes take on average of rays that leave the lids' front."""
+    climb = directions[:, 1] / np.maximum(directions[:, 2], 0.05)
+    root2 = climb * climb - 4 * LASH_CURL * room
+    meets = (climb > 0.0) & (root2 > 0.0)
+    way = np.maximum(climb - np.sqrt(np.maximum(root2, 0.0)), 0.0) / (2 * LASH_CURL * LASH_REACH_MM)
+    # A ray along the hairs passes more of them than one across.
+    slant = np.minimum(1 / np.sqrt(np.maximum(1 - directions[:, 2] ** 2, 0.04)), 2.5)
+    start, end = LASH_ENDS_MM
+    out = np.clip((np.abs(at[:, 0]) - start) / (end - start), 0.0, 1.0)
+    taken = LASH_COVER * slant * np.maximum(1 - way * way, 0.0) * (1 - out * out * (3 - 2 * out))
+    return np.asarray(np.where(meets, np.minimum(taken, 0.9), 0.0))
+
+
+def _hemispheres(normals: Floats) -> Floats:
+    """Return RAYS cosine-weighted directions about each normal, (n, RAYS, 3)."""
+    side = np.cross(normals, [0.0, 1.0, 0.1])
+    side /= np.maximum(np.linalg.norm(side, axis=1, keepdims=True), 1e-9)
+    up = np.cross(side, normals)
+    number = np.arange(RAYS)
+    square, turn = (number + 0.5) / RAYS, 2.399963 * number  # a spiral, a golden angle apart
+    local = np.stack(
+        [np.sqrt(square) * np.cos(turn), np.sqrt(square) * np.sin(turn), np.sqrt(1 - square)]
+    )
+    frames = np.stack([side, up, normals], axis=-1)
+    return np.asarray(np.einsum("nck,kr->nrc", frames, local))
