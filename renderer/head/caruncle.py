@@ -18,13 +18,13 @@ from renderer.head.lid_shell import on_globe
 
 CARUNCLE_END_MM: Final = -7.5  # towards the pupil: under the globe's surface from here on
 COVER_MM: Final = (-8.1, -9.4)  # the conjunctiva fades in over the sclera between these
-BRIDGE_MM: Final = 3.6  # how softly it leaves the globe: a valley would show the globe's outline
+BRIDGE_MM: Final = 5.0  # how softly it leaves the globe: a valley would show the globe's outline
 PLICA_MM: Final = -11.2  # free edge of the fold, a crescent that embraces the cornea
-PLICA_EDGE_MM: Final = 0.4  # from its foot on the globe to its height ...
+PLICA_EDGE_MM: Final = 0.35  # from its foot on the globe to its height ...
 PLICA_WIDTH_MM: Final = 0.95  # ... and on from there, down to the lake before the caruncle
-PLICA_RISE_MM: Final = 0.42
-BUMP_MM: Final = (-14.1, 1.8)  # the caruncle's middle and half width along x
-BUMP_RISE_MM: Final = 1.5
+PLICA_RISE_MM: Final = 0.5
+BUMP_MM: Final = (-14.0, 1.75, 2.5)  # the caruncle's middle, half widths to temple and nose
+BUMP_RISE_MM: Final = 1.2
 LAKE_MM: Final = 0.35  # depth of the tears around its foot
 GRANULE_MM: Final = 0.06  # height of its granules, which lie on lobes twice as high
 LATERAL_COVER_MM: Final = (10.5, 11.4)  # off the gaze axis: where the outer sheet fades in
@@ -61,9 +61,9 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     between = np.sin(np.pi * b)
     room = _ease(sheet.opening_mm / FULL_OPENING_MM)
     crescent = x - drawn + 0.6 * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
-    foot = _caruncle_foot(x - 0.3 * drawn, b)
+    foot = _caruncle_foot(x - 0.3 * drawn, y, b)
     dome = room * _dome(foot)
-    lake = room * np.exp(-(((foot - 1.12) / 0.2) ** 2)) * between
+    lake = room * np.exp(-(((foot - 1.12) / 0.2) ** 2)) * between * _ease((x - BUMP_MM[0]) / 1.2)
     fold, way = _plica(x - drawn, b)
     sag = 0.75 * between * _ease((x - MEDIAL_MM[0]) / 1.5)
     globe = on_globe(sheet.points_mm[..., :2], pose)
@@ -79,22 +79,24 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     cover = _ease((COVER_MM[0] - crescent) / (COVER_MM[0] - COVER_MM[1]))
     cover = np.maximum(cover, _beside_globe(sheet.points_mm))
     # White before the fold, pinker on it, red in the lake behind.
-    white = 1.0 - 0.45 * _ease(way / 0.7 + 0.6) - 0.45 * _ease((way - 0.8) / 0.7)
+    white = 1.0 - 0.5 * _ease(way / 0.5 + 0.6) - 0.4 * _ease((way - 0.8) / 0.7)
     pink = _ease(2.5 * dome)
     return Corner(
         sheet.points_mm.reshape(-1, 3),
         _quads(CARUNCLE_GRID),
         pink.ravel(),
         (room * pink).ravel(),
-        np.clip(white * (1 - pink) + 0.22 * np.clip(granules, 0, 1) * pink, 0, 1).ravel(),
+        np.clip(white * (1 - pink) + 0.15 * np.clip(granules, 0, 1) * pink, 0, 1).ravel(),
         cover.ravel(),
     )
 
 
-def _caruncle_foot(x: Floats, b: Floats) -> Floats:
-    """Return 0 at the caruncle's middle, 1 at its foot, more beyond."""
-    middle, half = BUMP_MM
-    return np.asarray(np.hypot((x - middle) / half, (b - 0.47) / 0.47))
+def _caruncle_foot(x: Floats, y: Floats, b: Floats) -> Floats:
+    """Return 0 at the caruncle's middle, 1 at its uneven foot, more beyond."""
+    middle, temple, nose = BUMP_MM
+    across, up = (x - middle) / np.where(x > middle, temple, nose), (b - 0.46) / 0.5
+    uneven = 1 + 0.06 * np.sin(2.9 * y + 1.7 * x) + 0.04 * np.sin(5.3 * y - 2.1 * x + 1.0)
+    return np.asarray(np.hypot(across, up) * uneven)
 
 
 def _dome(foot: Floats) -> Floats:

@@ -68,7 +68,8 @@ def light_corner(
     wrapped = np.maximum((cosine + wrap) / (1 + wrap) ** 2, 0.0)
     direct = sky.sun_irradiance * reaching[:, None] ** np.array(SHADE_SEEP) * wrapped
     diffuse = scatter(points_mm, triangles, ambient + direct / np.pi)
-    return SkinLight(diffuse, share, reaching)
+    # What mirrors at a slant sees more of lids and nose than what lies beneath.
+    return SkinLight(diffuse, share * share, reaching)
 
 
 def past_lids(

@@ -22,7 +22,8 @@ from renderer.head.skin import SCALP, detail_coordinates, paint
 
 SPARSE_ROW: Final = 29  # of the lid patches: from here on, every other column will do
 GRAIN_SCALE: Final = 2.2  # the caruncle's granules are so much finer than the cheek's polygons
-VESSELS_AT: Final = (-0.7, 0.22)  # in the lids' map, a turn early: on the upper lid
+VESSELS_AT: Final = (-0.7, 0.3)  # in the lids' map, a turn early: on the upper lid
+VESSELS_SCALE: Final = 1.7  # ... and so much finer than they lie there
 AROUND_COLUMN: Final = 11  # of the rows: the way around the fissure in the lids' map
 
 
@@ -121,7 +122,7 @@ def _skin_rows(part: SkinPart, albedo: Floats, eye: int | None) -> Floats:
         # The shader knows conjunctiva by a place before the lids' map; its vessels are the lids'.
         detail = detail * GRAIN_SCALE
         away = part.points_mm[:, :2] - part.points_mm[:, :2].mean(axis=0)
-        lid = VESSELS_AT + away / [AROUND_MM, 2 * ACROSS_MM]
+        lid = VESSELS_AT + VESSELS_SCALE * away / [AROUND_MM, 2 * ACROSS_MM]
     sunk = part.points_mm - part.normals * np.reshape(part.sink_mm, (-1, 1))
     return np.column_stack([sunk, part.normals, albedo, detail, lid, part.lid])
 
