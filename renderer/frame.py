@@ -62,6 +62,7 @@ class FrameRenderer:
             light=scene.light,
             static_cube=scene.surroundings.cube,
             crowd_cube=self._crowd_cube.texture if self._crowd_cube else None,
+            kept=scene.kept,
         )
         in_picture = len(views(spec, 0.0, eyes=eyes))
         self._picture = Picture(gl, (spec.width, spec.height), views=in_picture)

@@ -9,6 +9,7 @@ import moderngl
 from renderer.clip import ClipSpec
 from renderer.crowd.crowd import Crowd
 from renderer.crowd.cube import CrowdCube
+from renderer.eye.kept import Kept
 from renderer.head.head import Head
 from renderer.head.sun_shadow import build_light
 from renderer.light import Light
@@ -27,6 +28,7 @@ class Scene:
     light: Light
     crowd: Crowd
     crowd_cubes: dict[int, CrowdCube] = field(default_factory=dict)  # by size: large, slow to make
+    kept: Kept = field(default_factory=Kept)  # what eyes are made of
 
     def crowd_cube(self, gl: moderngl.Context, size_px: int) -> CrowdCube:
         """Return the cube map of the moving people at a size."""
@@ -58,10 +60,10 @@ def build_scene(gl: moderngl.Context, spec: ClipSpec, *, last: Scene | None = No
     # Another object of the same light would make the head bake it anew.
     is_lit = last is not None and same[0] and same[1]
     light = last.light if last and is_lit else build_light(gl, surroundings.sky, head)
+    kept = last.kept if last else Kept()
     if last and same[0] and same[2]:
         crowd = last.crowd
         crowd.light = light  # the same sun; the head's shadow may be another
-        return Scene(key, surroundings, head, light, crowd, last.crowd_cubes)
-    return Scene(
-        key, surroundings, head, light, Crowd(gl, spec, light, static_cube=surroundings.cube)
-    )
+        return Scene(key, surroundings, head, light, crowd, last.crowd_cubes, kept)
+    crowd = Crowd(gl, spec, light, static_cube=surroundings.cube)
+    return Scene(key, surroundings, head, light, crowd, kept=kept)

@@ -15,6 +15,7 @@ import numpy as np
 from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.eye.kept import Kept
 from renderer.eye.lids import LidRims
 from renderer.eye.model import EyeModel, build_model
 from renderer.eye.morph import Morph
@@ -36,10 +37,12 @@ class Eyes:
         static_cube: Callable[[int], moderngl.TextureCube],
         crowd_cube: moderngl.TextureCube | None,
         has_face: bool = True,
+        kept: Kept | None = None,
     ) -> None:
         """Build both eyes in their light; ``static_cube`` gives the surroundings at a size.
 
-        Without a face (``has_face``) they mirror all of the surroundings.
+        Without a face (``has_face``) they mirror all of the surroundings. ``kept`` has what eyes
+        before them were built of, and takes what these are.
         """
         self._gl = gl
         self._spec = spec
@@ -48,6 +51,7 @@ class Eyes:
         self._static_cube = static_cube
         self._crowd_cube = crowd_cube
         self._has_face = has_face
+        self._kept = kept or Kept()
         self._built: dict[tuple[int, Detail], EyeModel] = {}
         self._morphs: dict[tuple[Detail, Detail], Morph] = {}
         self._shares: list[Shares] = [((spec.left, 1.0),), ((spec.right, 1.0),)]
@@ -156,6 +160,7 @@ class Eyes:
                 light=self._light,
                 cubes=_cubes(detail, self._static_cube, self._crowd_cube),
                 has_face=self._has_face,
+                kept=self._kept,
             )
         return self._built[eye, detail]
 

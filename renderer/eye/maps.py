@@ -15,6 +15,7 @@ from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye import sclera
 from renderer.eye.anatomy import CORNEA_IOR
+from renderer.eye.kept import Kept
 from renderer.eye.micro_relief import SLOPE_RANGE, TILE_MM, micro_relief_tile
 from renderer.eye.sclera import HALF_SIZE_MM, sclera_maps
 from renderer.eye.subsurface import subsurface_gain
@@ -44,23 +45,32 @@ def iris_values(
     *,
     sun_eye: Array,
     source: Iris | None = None,
+    kept: Kept | None = None,
 ) -> Values:
     """Return the iris's textures and colours for a LoD; ``sun_eye`` (3,) points towards the sun.
 
-    The iris is the clip's own unless a ``source`` is given.
+    The iris is the clip's own unless a ``source`` is given. ``kept`` has the textures of eyes
+    built before and takes these.
     """
     size = int(detail.setting("texture", "iris_map_px"))
-    source = source or iris_of(spec)
-    maps, height = source.maps(size), source.maps(min(size, HEIGHT_PX)).height_mm
+    iris, kept = source or iris_of(spec), kept or Kept()
+    return {
+        **kept.get(("iris", iris, size), lambda: _iris_textures(gl, iris, size)),
+        "u_iris_mean": iris.mean_albedo,
+        "u_pupil_mm": spec.pupil_mm,
+        **_subsurface_values(gl, iris, detail, sun_eye, kept),
+    }
+
+
+def _iris_textures(gl: moderngl.Context, source: Iris, size_px: int) -> Values:
+    maps, height = source.maps(size_px), source.maps(min(size_px, HEIGHT_PX)).height_mm
     highest = max(float(height.max()), 1e-3)
     return {
         "u_iris_albedo": srgb_texture(gl, with_alpha(maps.albedo, maps.cavity)),
         "u_iris_normal": packed_texture(gl, maps.normal),
         "u_iris_height": grey_texture(gl, _filled(height) / highest, mips=False),
         "u_relief_mm": (highest, float(height[_tissue(len(height))].mean())),
-        "u_iris_mean": source.mean_albedo,
-        "u_pupil_mm": spec.pupil_mm,
-    } | _subsurface_values(gl, source, detail, sun_eye)
+    }
 
 
 def _filled(height_mm: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
@@ -82,17 +92,24 @@ def _tissue(size_px: int) -> npt.NDArray[np.bool_]:
     return np.asarray(inside | (size_px == 1))
 
 
-def sclera_values(gl: moderngl.Context, spec: ClipSpec, detail: Detail) -> Values:
-    """Return the sclera's textures and mean colour for a LoD."""
+def sclera_values(
+    gl: moderngl.Context, spec: ClipSpec, detail: Detail, *, kept: Kept | None = None
+) -> Values:
+    """Return the sclera's textures and mean colour for a LoD; ``kept`` as for the iris."""
+    seed, kept = spec.iris_seed, kept or Kept()
     diffuse_px = int(detail.setting("sclera", "diffuse_map_px"))
-    normal_px = int(detail.setting("sclera", "normal_map_px"))
-    diffuse = sclera_maps(spec.iris_seed, size_px=diffuse_px).albedo
-    normal = sclera_maps(spec.iris_seed, size_px=max(normal_px, 1)).normal
+    normal_px = max(int(detail.setting("sclera", "normal_map_px")), 1)
     return {
-        "u_sclera_albedo": srgb_texture(gl, with_alpha(diffuse)),
-        "u_sclera_normal": packed_texture(gl, normal),
-        "u_sclera_mean": sclera.mean_albedo(spec.iris_seed),
-        "u_micro_relief": tiling_texture(gl, micro_relief_tile()),
+        "u_sclera_albedo": kept.get(
+            ("sclera's colour", seed, diffuse_px),
+            lambda: srgb_texture(gl, with_alpha(sclera_maps(seed, size_px=diffuse_px).albedo)),
+        ),
+        "u_sclera_normal": kept.get(
+            ("sclera's normals", seed, normal_px),
+            lambda: packed_texture(gl, sclera_maps(seed, size_px=normal_px).normal),
+        ),
+        "u_sclera_mean": sclera.mean_albedo(seed),
+        "u_micro_relief": kept.get("micro relief", lambda: tiling_texture(gl, micro_relief_tile())),
     }
 
 
@@ -106,16 +123,19 @@ def tissue_constants() -> dict[str, float]:
 
 
 def _subsurface_values(
-    gl: moderngl.Context, source: Iris, detail: Detail, sun_eye: Array
+    gl: moderngl.Context, source: Iris, detail: Detail, sun_eye: Array, kept: Kept
 ) -> Values:
     """Return the layers, their coefficients and the gain that ties them to the map's colour."""
     is_bent = {detail.refraction, detail.caustics} & {"high", "ultra"}
     across = -sun_eye[:2] / (CORNEA_IOR if is_bent else 1.0)
-    layers = source.maps(THICKNESS_PX.get(detail.subsurface, 1)).thickness_mm
+    size = THICKNESS_PX.get(detail.subsurface, 1)
     mean = source.mean_thickness_mm.astype(np.float64)
     tissue = source.tissue
     return {
-        "u_thickness": float_texture(gl, layers),
+        "u_thickness": kept.get(
+            ("iris's layers", source, size),
+            lambda: float_texture(gl, source.maps(size).thickness_mm),
+        ),
         "u_sigma_s": tissue.sigma_s.T,
         "u_sigma_t": tissue.sigma_t.T,
         "u_anisotropy": tissue.anisotropy,

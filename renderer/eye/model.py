@@ -19,6 +19,7 @@ from renderer.detail import Detail
 from renderer.eye.anatomy import shader_constants
 from renderer.eye.calibration import calibrated_gain, open_lids
 from renderer.eye.flat_iris import flat_iris
+from renderer.eye.kept import Kept, Same, fingerprint
 from renderer.eye.lids import LidRims
 from renderer.eye.maps import iris_values, sclera_values, tissue_constants
 from renderer.eye.silhouette import Shaded, Silhouette, detail_mesh, hull_mesh, vertex_array
@@ -71,27 +72,37 @@ def build_model(
     light: Light,
     cubes: dict[str, moderngl.TextureCube],
     has_face: bool,
+    kept: Kept,
 ) -> EyeModel:
     """Build the viewer's left (0) or right (1) eye with a LoD's levels in its light."""
     constants = eye_constants(detail, spec) | {"OWN_FACE": int(has_face)}
-    program = build_program(gl, "eye.vert", fragment="eye.frag", constants=constants)
+    program = kept.get(
+        ("eye.frag", *sorted(constants.items())),
+        lambda: build_program(gl, "eye.vert", fragment="eye.frag", constants=constants),
+    )
     turn = gaze_rotation(*gaze_deg(spec, eye))
     is_gathered = detail.caustics in {"high", "ultra"} and spec.caustic_pattern == "computed"
     mirror = 1.0 if eye == 0 else -1.0
     gain = APPARENT_GAIN if is_gathered else 1.0
     map_px = min(CHAMBER_PX, int(detail.setting("texture", "iris_map_px")))
-    iris = iris_of(spec).maps(map_px)
-    albedo = gain * flat_iris(iris, spec.pupil_mm, size_px=CHAMBER_PX, mirror=mirror)
+    iris, flat_px = iris_of(spec), CHAMBER_PX
+    albedo = gain * kept.get(
+        ("flat iris", iris, map_px, spec.pupil_mm, flat_px, mirror),
+        lambda: flat_iris(iris.maps(map_px), spec.pupil_mm, size_px=flat_px, mirror=mirror),
+    )
     placed = {
         **light.uniforms(),
         "u_lid_rims": rims_texture(gl, rims),
         "u_eye_to_world": _placed(turn, eye_centre_mm(eye)),
     }
+    rims_and_place = (rims.upper_mm, rims.lower_mm, placed["u_eye_to_world"])
     values = {
         **placed,
         **cubes,
-        **iris_values(gl, spec, detail, sun_eye=np.asarray(light.sky.sun_direction) @ turn),
-        **sclera_values(gl, spec, detail),
+        **iris_values(
+            gl, spec, detail, sun_eye=np.asarray(light.sky.sun_direction) @ turn, kept=kept
+        ),
+        **sclera_values(gl, spec, detail, kept=kept),
         **sunlight_values(
             gl,
             detail,
@@ -100,12 +111,12 @@ def build_model(
             rims=rims,
             albedo=albedo,
             caustic_pattern=spec.caustic_pattern,
+            kept=kept,
         ),
-        "u_shade_map": shade_map(gl, placed),
+        **_shades(gl, placed, kept=kept, key=(Same(light), fingerprint(*rims_and_place))),
         "u_mirror": mirror,
         "u_iris_gain": np.full(3, gain),
     }
-    values["u_scattered_sun"] = scattered_sun(gl, values["u_shade_map"])
     values["u_relief_shade"] = relief_shade_map(
         gl, values, constants=constants, size_px=RELIEF_SHADE_PX.get(detail.texture, 0)
     )
@@ -124,6 +135,25 @@ def build_model(
     shaded = Shaded(rims, has_depth=not is_fine)
     silhouette = Silhouette(gl, detail_mesh(detail)) if is_fine else None
     return EyeModel(detail, program, mesh, values, shaded, silhouette)
+
+
+def _shades(
+    gl: moderngl.Context, placed: dict[str, Any], *, kept: Kept, key: tuple[object, ...]
+) -> dict[str, Any]:
+    """Return the maps of sun and sky on the globe, which every LoD of an eye reads.
+
+    With the head's shadow, which the key keeps: it counts too.
+    """
+
+    def made() -> dict[str, Any]:
+        shade = shade_map(gl, placed)
+        return {
+            "u_shade_map": shade,
+            "u_scattered_sun": scattered_sun(gl, shade),
+            "u_sun_shadow": placed["u_sun_shadow"],
+        }
+
+    return kept.get(("shade", *key), made)
 
 
 def eye_constants(detail: Detail, spec: ClipSpec) -> dict[str, int | float]:

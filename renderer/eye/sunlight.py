@@ -14,6 +14,7 @@ from renderer.detail import Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM, shader_constants
 from renderer.eye.caustics import MAP_EDGE_MM, caustic_map
 from renderer.eye.chamber import chamber_irradiance
+from renderer.eye.kept import Kept, fingerprint
 from renderer.eye.lids import LidRims
 from renderer.eye.painted_caustic import painted_caustic
 from renderer.eye.textures import clamped, float_texture, grey_texture, with_alpha
@@ -40,27 +41,43 @@ def sunlight_values(
     rims: LidRims,
     albedo: Array,
     caustic_pattern: str = "computed",
+    kept: Kept | None = None,
 ) -> Values:
     """Return the maps of sun and sky inside the eye; ``eye_to_world`` is (3, 3).
 
     ``albedo`` (n, n, 3) is the iris's on its plane: some of its light comes back from the cornea.
     ``caustic_pattern`` "painted" adds the thesis's painted map; direction alone is then computed.
+    ``kept`` has the maps of eyes built before and takes these.
     """
+    kept = kept or Kept()
     sun_eye = np.asarray(sky.sun_direction, dtype=np.float64) @ eye_to_world
     map_px = int(detail.setting("caustics", "caustic_map_px"))
     is_painted = caustic_pattern == "painted"
     size = DIRECTION_MAP_PX if is_painted else map_px or DIRECTION_MAP_PX
-    caustic = cached_array(
-        f"caustic {size} {np.round(sun_eye, 9).tolist()}", lambda: caustic_map(sun_eye, size)
-    )
-    chamber = chamber_irradiance(
-        sky.radiance, eye_to_world, rims=rims, albedo=albedo, size_px=len(albedo)
-    )
+    caustic = f"caustic {size} {np.round(sun_eye, 9).tolist()}"
+    curves = (rims.upper_mm, rims.lower_mm)
+    faces = sky.ambient_sh if sky.faces is None else sky.faces
     return {
-        "u_caustic_map": float_texture(gl, with_alpha(caustic)),
-        "u_chamber_map": float_texture(gl, with_alpha(chamber)),
+        "u_caustic_map": kept.get(
+            caustic,
+            lambda: float_texture(
+                gl, with_alpha(cached_array(caustic, lambda: caustic_map(sun_eye, size)))
+            ),
+        ),
+        "u_chamber_map": kept.get(
+            ("chamber", fingerprint(faces, eye_to_world, *curves, albedo)),
+            lambda: float_texture(gl, with_alpha(_chamber(sky, eye_to_world, rims, albedo))),
+        ),
         "u_painted_caustic": grey_texture(gl, _painting(map_px if is_painted else 0)),
     }
+
+
+def _chamber(
+    sky: Sky, eye_to_world: Array, rims: LidRims, albedo: Array
+) -> npt.NDArray[np.float32]:
+    return chamber_irradiance(
+        sky.radiance, eye_to_world, rims=rims, albedo=albedo, size_px=len(albedo)
+    )
 
 
 def _painting(size_px: int) -> npt.NDArray[np.float32]:
