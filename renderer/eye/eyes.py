@@ -7,6 +7,7 @@ only for the LoDs that a frame asks for.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import moderngl
@@ -67,8 +68,7 @@ class Eyes:
         Builds what was not asked for before, in a state of its own: call it before a frame.
         """
         self._shares[eye] = shares
-        for detail, _ in shares:
-            self._model(eye, detail)
+        self._drawn(eye)
         if len(shares) > 1:
             self._morph(eye)
 
@@ -129,7 +129,22 @@ class Eyes:
         return self._drawn(eye)[0].program.is_active(uniform)
 
     def _drawn(self, eye: int) -> list[EyeModel]:
-        return [self._model(eye, detail) for detail, _ in self._shares[eye]]
+        """Return the models that an eye is drawn with.
+
+        Where one of two refracts, both do, by its share: the pupil moves instead of showing twice.
+        """
+        details = [detail for detail, _ in self._shares[eye]]
+        bending = _refracting(self._shares[eye])
+        if bending is None:
+            return [self._model(eye, detail) for detail in details]
+        models = []
+        for detail in details:
+            own = self._model(eye, detail)
+            bent = self._model(eye, detail.with_levels(refraction=bending[0]))
+            models.append(
+                replace(bent, values=bent.values | {"u_iris_gain": own.values["u_iris_gain"]})
+            )
+        return models
 
     def _set(
         self,
@@ -140,12 +155,14 @@ class Eyes:
         eye: int,
         lines: int | None = None,
     ) -> None:
+        bending = _refracting(self._shares[eye])
         distance_mm = float(np.linalg.norm(np.asarray(camera_mm) - eye_centre_mm(eye)))
         lines = lines or self._gl.fbo.viewport[3]
         model.program.set(
             **model.values,
             **camera,
             u_camera_mm=camera_mm,
+            u_unbent=0.0 if bending is None else 1.0 - bending[1],
             u_mm_per_px=2 * distance_mm / (float(camera["u_projection"][1][1]) * lines),
         )
 
@@ -169,6 +186,12 @@ class Eyes:
         if (coarse, fine) not in self._morphs:
             self._morphs[coarse, fine] = Morph(self._gl, coarse, fine)
         return self._morphs[coarse, fine]
+
+
+def _refracting(shares: Shares) -> tuple[str, float] | None:
+    """Return level and share of the LoD that refracts where the other one does not, else None."""
+    bent = [(d.refraction, share) for d, share in shares if d.setting("refraction", "refracts")]
+    return bent[0] if len(shares) > 1 and len(bent) == 1 else None
 
 
 def _cubes(
