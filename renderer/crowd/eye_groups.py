@@ -16,9 +16,10 @@ from renderer.cache import cached_array
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.caustics import caustic_map
+from renderer.eye.geometry import Mesh, eye_mesh
 from renderer.eye.maps import iris_values, sclera_values
 from renderer.eye.model import APPARENT_GAIN, eye_constants
-from renderer.eye.silhouette import detail_mesh, vertex_array
+from renderer.eye.silhouette import vertex_array
 from renderer.iris.source import Iris
 from renderer.program import Program, build_program
 
@@ -90,7 +91,7 @@ class EyeGroups:
             shared["u_static_cube"] = self._static_cube(size)
         if is_gathered or detail.refraction in {"high", "ultra"}:
             shared["u_caustic_pool"] = self._caustic_pool()
-        return program, vertex_array(self._gl, program, detail_mesh(detail)), shared
+        return program, vertex_array(self._gl, program, crowd_mesh(detail)), shared
 
     def _iris(self, detail: Detail, iris: str) -> dict[str, Any]:
         # The layers' gain is that of light from in front and above, whoever looks wherever.
@@ -117,6 +118,19 @@ def caustic_layers() -> Any:
     angles = np.radians(np.arange(CAUSTIC_LAYERS) * CAUSTIC_STEP_DEG)
     suns = np.stack([np.sin(angles), np.zeros_like(angles), np.cos(angles)], axis=1)
     return np.stack([caustic_map(sun, CAUSTIC_PX) for sun in suns])
+
+
+def crowd_mesh(detail: Detail) -> Mesh:
+    """Return a LoD's mesh as the crowd has it: a step coarser where normals come from the formula.
+
+    Lids hide these globes' silhouettes, and the view ray meets the formula's surface under any
+    mesh; fine triangles, smaller than a pixel here, would be all of the cost.
+    """
+    triangles = int(detail.setting("tessellation", "triangles"))
+    normals = detail.setting("tessellation", "normals")
+    return eye_mesh(
+        triangles // 4 if normals == "analytic" else triangles, facets=normals == "facet"
+    )
 
 
 def crowd_detail(detail: Detail) -> Detail:

@@ -12,7 +12,13 @@ from renderer.camera import LIMBUS_Z_MM, iris_px, look_at, perspective, views
 from renderer.clip import ClipSpec
 from renderer.crowd import gaze
 from renderer.crowd.bodies import build_figures
-from renderer.crowd.eye_groups import CAUSTIC_STEP_DEG, IRISES, caustic_layers, crowd_detail
+from renderer.crowd.eye_groups import (
+    CAUSTIC_STEP_DEG,
+    IRISES,
+    caustic_layers,
+    crowd_detail,
+    crowd_mesh,
+)
 from renderer.crowd.eyes import PAINTED_PX
 from renderer.crowd.figures import Figure, Troupe
 from renderer.crowd.formation import CAMERA_MM, formation, group_view
@@ -237,6 +243,11 @@ def test_the_pool_of_caustics_is_the_clips_own_turned() -> None:
     inner = slice(40, 88)
     ours, theirs = np.rot90(turned, 2), upright[..., 2]
     np.testing.assert_allclose(ours[inner, inner], theirs[inner, inner], atol=1e-3)
+
+
+def test_globes_of_the_crowd_are_a_step_coarser_where_a_formula_shades_them() -> None:
+    counts = [len(crowd_mesh(Detail.uniform(lod)).triangles) for lod in STANDARD_LODS]
+    np.testing.assert_allclose(counts, [150, 500, 500, 2000], rtol=0.05)
 
 
 def test_the_crowd_mirrors_no_moving_people() -> None:
