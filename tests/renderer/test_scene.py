@@ -18,8 +18,9 @@ PARTS = ("surroundings", "head", "crowd")
 class Part:
     """Stands for a part of the scene; knows the light and the sky that it was built with."""
 
-    def __init__(self, _gl: Any, _spec: ClipSpec, light: Any = None) -> None:
+    def __init__(self, _gl: Any, _spec: ClipSpec, light: Any = None, **_more: Any) -> None:
         self.light = light
+        self.cube = object()
         self.sky = object()
 
 
@@ -45,7 +46,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_only_what_a_clip_changes_is_built_anew(
     changed: dict[str, Any], rebuilt: set[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ClipSpec, "_faults", lambda _self: [])
+    monkeypatch.setattr("renderer.clip.clip_faults", lambda *_: [])
     gl: Any = None
     last = scenes.build_scene(gl, SPEC)
     scene = scenes.build_scene(gl, replace(SPEC, **changed), last=last)
