@@ -18,6 +18,7 @@ from renderer.head.lid_shell import on_globe
 
 CARUNCLE_END_MM: Final = -7.5  # towards the pupil: under the globe's surface from here on
 COVER_MM: Final = (-8.1, -9.4)  # the conjunctiva fades in over the sclera between these
+CRESCENT_MM: Final = 0.25  # how far its lines bend around the pupil towards the lids
 BRIDGE_MM: Final = 5.0  # how softly it leaves the globe: a valley would show the globe's outline
 PLICA_MM: Final = -11.2  # free edge of the fold, a crescent that embraces the cornea
 PLICA_EDGE_MM: Final = 0.35  # from its foot on the globe to its height ...
@@ -60,7 +61,7 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     x, y, z = (sheet.points_mm[..., axis] for axis in range(3))
     between = np.sin(np.pi * b)
     room = _ease(sheet.opening_mm / FULL_OPENING_MM)
-    crescent = x - drawn + 0.6 * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
+    crescent = x - drawn + CRESCENT_MM * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
     foot = _caruncle_foot(x - 0.3 * drawn, y, b)
     dome = room * _dome(foot)
     lake = room * np.exp(-(((foot - 1.12) / 0.2) ** 2)) * between * _ease((x - BUMP_MM[0]) / 1.2)
@@ -173,7 +174,8 @@ def _sheet(corner_x: float, inner_x: float, pose: LidPose, *, grid: tuple[int, i
     rows, columns = grid
     a, b = np.meshgrid(np.linspace(0, 1, rows), np.linspace(-0.03, 1.03, columns), indexing="ij")
     # The inner edge is a crescent around the pupil.
-    crescent = inner_x + np.sign(corner_x) * 1.2 * (2 * np.clip(b, 0, 1) - 1) ** 2
+    bend = 1.2 if corner_x > 0 else CRESCENT_MM
+    crescent = inner_x + np.sign(corner_x) * bend * (2 * np.clip(b, 0, 1) - 1) ** 2
     x = corner_x + (crescent - corner_x) * a
     upper, lower = (
         [np.interp(x, curve[:, 0], curve[:, axis]) for axis in (1, 2)]
