@@ -41,6 +41,7 @@ KEEPING: Final = replace(
     SWITCHING, left_switching="fixed", right_switching="fixed", lod_policy=None
 )
 LARGEST_STEP: Final = 1.35  # of the largest step of an eye that keeps its LoD
+DARK: Final = 30  # of 255: pupils, and little else
 SEAM_LEVELS: Final = 0.25  # of 255, the mean where a blend begins and ends
 
 
@@ -102,6 +103,23 @@ def test_a_blend_begins_as_the_one_and_ends_as_the_other(
     assert np.abs(high - low).mean() > 10 * SEAM_LEVELS, "the LoDs differ, so the test can fail"
     assert np.abs(half - low).mean() < np.abs(high - low).mean()
     assert np.abs(half - high).mean() < np.abs(high - low).mean()
+
+
+def test_from_the_side_a_blending_eye_has_one_pupil(
+    renderers: tuple[FrameRenderer, FrameRenderer],
+) -> None:
+    """Low does not refract and high does: their pupils lie beside each other."""
+    azimuth_deg, size = 45.0, 240.0
+    seen = views(SWITCHING, azimuth_deg, distance_px=size)
+    place = eye_rectangles(SWITCHING, azimuth_deg, distance_px=size)[0]
+
+    def dark(at: float) -> np.ndarray:
+        shown = renderers[0].render_views(seen, places=(at, 1.0)).pixels[place]
+        return shown.max(axis=-1) < DARK
+
+    low, half, high = (dark(at) for at in (0.0, 0.5, 1.0))
+    assert (low & high).sum() < 0.8 * min(low.sum(), high.sum()), "a fade would keep but this"
+    assert half.sum() > 0.9 * min(low.sum(), high.sum())
 
 
 def test_a_frame_alone_is_the_frame_of_the_clip(
