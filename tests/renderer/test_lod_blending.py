@@ -40,7 +40,7 @@ SWITCHING: Final = ClipSpec(
 KEEPING: Final = replace(
     SWITCHING, left_switching="fixed", right_switching="fixed", lod_policy=None
 )
-LARGEST_STEP: Final = 1.35  # of the largest step of an eye that keeps its LoD
+LARGEST_STEP: Final = 1.15  # of the largest step of an eye that keeps its LoD
 DARK: Final = 30  # of 255: pupils, and little else
 SEAM_LEVELS: Final = 0.25  # of 255, the mean where a blend begins and ends
 
