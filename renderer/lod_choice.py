@@ -1,6 +1,6 @@
 """Which LoD an eye of a given size on the picture is drawn with. Pure: no GL, no files, no camera.
 
-The thesis chose by pixel count (chapter 3) and switched at once (section 6.3 left the blending
+The thesis chose by pixel count (section 3.4) and switched at once (section 6.3 left the blending
 open). Here the measure is the iris's diameter in pixels: it does not change when the eye turns or
 the lids close, and for a facing eye its square is the pixel count.
 
