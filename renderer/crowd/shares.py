@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from renderer.body.rig import skin_vertices
-from renderer.cache import cached_arrays
+from renderer.cache import cached_array
+from renderer.crowd.cast import TEMPLATES
 from renderer.crowd.figure import BONES
 from renderer.crowd.figures import Figure
 from renderer.crowd.occlusion import cone_directions, openness, visibility
+from renderer.crowd.stage import Member
 
 Floats = npt.NDArray[np.float64]
 
@@ -20,14 +23,40 @@ SUN_RADIUS_RAD: Final = 0.05  # softer than the real 0.005, which vertex values 
 
 
 def light_shares(figure: Figure, sun: Floats) -> Floats:
-    """Return (n, 2): openness to the sky and visibility of the sun, in the pose at time 0."""
-    who = f"{figure.member} {figure.seed} {figure.is_awake}"
-    key = f"crowd light {who} {np.round(sun, 6).tolist()}"
-    shares = cached_arrays(key, lambda: {"shares": _light_shares(figure, sun)})["shares"]
-    return shares.astype(np.float64)
+    """Return (n, 2): openness to the sky and visibility of the sun, in the pose at time 0.
+
+    In a large crowd (``is_awake``) those who wear the same mesh share its openness, baked as they
+    stand facing the viewer: limbs shade the same places whichever way a body is turned.
+    """
+    towards = f"{np.round(sun, 6).tolist()}"
+    if not figure.is_awake:
+        key = f"crowd light {figure.member} {figure.seed} {towards}"
+        return cached_array(key, lambda: _both(figure, sun)).astype(np.float64)
+    wearer = Member(TEMPLATES[figure.member.person.body], "stand")
+    mesh = replace(figure, member=wearer, seed=0, scale=1.0)
+    sky = cached_array(f"crowd sky {mesh.member}", lambda: _sky(mesh))
+    key = f"crowd sun {figure.member} {figure.seed} {towards}"
+    lit = cached_array(key, lambda: _lit(figure, sun))
+    return np.stack([sky, lit], axis=1).astype(np.float64)
 
 
-def _light_shares(figure: Figure, sun: Floats) -> Floats:
+def _both(figure: Figure, sun: Floats) -> Floats:
+    return np.stack([_sky(figure), _lit(figure, sun)], axis=1)
+
+
+def _sky(figure: Figure) -> Floats:
+    positions, normals = _posed(figure)
+    return openness(positions, normals, triangles=figure.body.triangles, count=SKY_DIRECTIONS)
+
+
+def _lit(figure: Figure, sun: Floats) -> Floats:
+    positions, _ = _posed(figure)
+    towards = cone_directions(sun, angle_rad=SUN_RADIUS_RAD)
+    return np.asarray(visibility(positions, figure.body.triangles, directions=towards).mean(axis=1))
+
+
+def _posed(figure: Figure) -> tuple[Floats, Floats]:
+    """Return positions in mm and normals (n, 3) at time 0."""
     body = figure.body
     full = np.zeros((len(body.positions_mm), len(BONES)))
     np.add.at(full, (np.arange(len(full))[:, None], body.bones), body.weights)
@@ -36,8 +65,4 @@ def _light_shares(figure: Figure, sun: Floats) -> Floats:
     turns = transforms.copy()
     turns[:, :3, 3] = 0.0
     turns[:, :3, :3] /= figure.scale
-    normals = skin_vertices(body.normals, turns, weights=full)
-    sky = openness(positions, normals, triangles=body.triangles, count=SKY_DIRECTIONS)
-    towards = cone_directions(sun, angle_rad=SUN_RADIUS_RAD)
-    lit = visibility(positions, body.triangles, directions=towards).mean(axis=1)
-    return np.stack([sky, lit], axis=1)
+    return positions, skin_vertices(body.normals, turns, weights=full)
