@@ -6,7 +6,9 @@ lashes and hair; then tone curve and 8 bits.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import moderngl
 
@@ -18,6 +20,9 @@ from renderer.eye.model import EyeModel
 from renderer.lod_path import Places, details_of, places_of_clip, places_of_view, shares_of
 from renderer.picture import SAMPLES, Picture, Pixels, Radiance
 from renderer.scene import Scene, build_scene, scene_key
+
+# What a view is drawn by, in this order: what lets something through lies over what does not.
+PASSES: Final = ("head", "eyes", "tears", "bystanders", "background", "hair")
 
 
 @dataclass(frozen=True)
@@ -32,7 +37,8 @@ class FrameRenderer:
     """Render the frames of one clip. Pass ``scene`` to reuse the last clip's as far as it fits.
 
     ``eyes`` narrows what is drawn to one eye, (0,) left or (1,) right, which then has the whole
-    picture at macroscopic: what one eye costs. Clips have both.
+    picture at macroscopic: what one eye costs. Clips have both. ``until`` names the last of PASSES
+    to draw, to show how a frame comes about.
     """
 
     def __init__(
@@ -43,10 +49,12 @@ class FrameRenderer:
         scene: Scene | None = None,
         wireframe: bool = False,
         eyes: tuple[int, ...] = (0, 1),
+        until: str = PASSES[-1],
     ) -> None:
         self.gl = gl
         self.spec = spec
         self.wireframe = wireframe
+        self._passes = PASSES[: PASSES.index(until) + 1]
         self._drawn_eyes = eyes
         if scene is None or scene.key != scene_key(spec):
             scene = build_scene(gl, spec, last=scene)
@@ -185,11 +193,31 @@ class FrameRenderer:
     def _draw_view(self, view: View, time_s: float) -> dict[int, moderngl.Query]:
         camera = view.uniforms
         scene = self.scene
+        queries: dict[int, moderngl.Query] = {}
         # Meshes that change with the distance would change the face amid an approach.
         scene.head.is_close = True if self._is_approach else None
-        scene.head.draw(**camera, light=scene.light)
+        passes: dict[str, Callable[[], None]] = {
+            "head": lambda: scene.head.draw(**camera, light=scene.light),
+            "eyes": lambda: queries.update(self._draw_eyes(view)),
+            "tears": lambda: self._draw_tears(view),
+            "bystanders": lambda: scene.crowd.draw(**camera, time_s=time_s),
+            "background": lambda: scene.surroundings.draw_background(
+                view_matrix=view.view_matrix,
+                projection=view.projection,
+                is_smooth=self._is_approach,
+            ),
+            "hair": lambda: scene.head.draw_hair(**camera, light=scene.light),
+        }
+        for name in self._passes:
+            passes[name]()
+        return queries
+
+    def _draw_eyes(self, view: View) -> dict[int, moderngl.Query]:
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        queries = {eye: self._draw_eye(eye, camera) for eye in view.eyes}
+        return {eye: self._draw_eye(eye, view.uniforms) for eye in view.eyes}
+
+    def _draw_tears(self, view: View) -> None:
+        head, light = self.scene.head, self.scene.light
         for eye in view.eyes:
             wet = sum(
                 share
@@ -197,15 +225,7 @@ class FrameRenderer:
                 if detail.reflection in {"high", "ultra"}
             )
             if wet > 0.0:
-                scene.head.draw_tears(eye, **camera, light=scene.light, share=wet)
-        scene.crowd.draw(**camera, time_s=time_s)
-        scene.surroundings.draw_background(
-            view_matrix=view.view_matrix,
-            projection=view.projection,
-            is_smooth=self._is_approach,
-        )
-        scene.head.draw_hair(**camera, light=scene.light)
-        return queries
+                head.draw_tears(eye, **view.uniforms, light=light, share=wet)
 
     def _draw_eye(self, eye: int, camera: CameraUniforms) -> moderngl.Query:
         self._eyes.shade(eye, **camera)  # outside the query: it counts what is seen

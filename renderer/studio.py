@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from renderer.clip import ClipSpec
 from renderer.context import create_context, identify
-from renderer.frame import Frame, FrameRenderer
+from renderer.frame import PASSES, Frame, FrameRenderer
 from renderer.group import GroupRenderer
 from renderer.scene import Scene, scene_key
 
@@ -22,10 +22,20 @@ class Studio:
         self._scene: Scene | None = None
 
     def renderer(
-        self, spec: ClipSpec, *, wireframe: bool = False, eyes: tuple[int, ...] = (0, 1)
+        self,
+        spec: ClipSpec,
+        *,
+        wireframe: bool = False,
+        eyes: tuple[int, ...] = (0, 1),
+        until: str = PASSES[-1],
     ) -> FrameRenderer:
-        """Return a renderer of one clip's frames, in the last clip's scene where it fits."""
-        renderer = FrameRenderer(self.gl, spec, scene=self._scene, wireframe=wireframe, eyes=eyes)
+        """Return a renderer of one clip's frames, in the last clip's scene where it fits.
+
+        The other arguments are those of ``FrameRenderer``.
+        """
+        renderer = FrameRenderer(
+            self.gl, spec, scene=self._scene, wireframe=wireframe, eyes=eyes, until=until
+        )
         self._scene = renderer.scene
         return renderer
 

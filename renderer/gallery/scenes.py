@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Final
 
-from renderer.gallery.shots import BOTH_EYES, LEFT_EYE, LEFT_IRIS, Shot, left_only, spec_of
+from renderer.frame import PASSES
+from renderer.gallery.shots import (
+    BOTH_EYES,
+    LEFT_EYE,
+    LEFT_IRIS,
+    WHOLE,
+    Shot,
+    left_only,
+    spec_of,
+)
 from renderer.gallery.strips import Strip, of_shots
 
 SUN_AZIMUTHS_DEG: Final = (-60, -30, 0, 30, 60)
@@ -56,7 +65,22 @@ def _blink() -> list[Shot]:
     ]
 
 
+def _passes() -> list[Shot]:
+    """Return one frame after each of its passes."""
+    return [
+        Shot(
+            f"{number}: {name}",
+            spec_of(distance="near", crowd=30),
+            WHOLE,
+            azimuth_deg=35.0,
+            until=name,
+        )
+        for number, name in enumerate(PASSES, start=1)
+    ]
+
+
 SCENES: Final = (
+    Strip("passes", "How a frame comes about", of_shots(_passes()), 3, 600),
     Strip("sun", "The sun moves the caustic", of_shots(_sun()), 5, 300),
     Strip("gaze", "The lids follow the gaze", of_shots(_gaze()), 2, 720),
     Strip("vergence", "Both eyes on one point", of_shots(_vergence()), 3, 600),

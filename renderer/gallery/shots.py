@@ -15,6 +15,7 @@ from PIL import Image
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.frame import PASSES
 from renderer.picture import Pixels
 from renderer.studio import Studio
 
@@ -34,8 +35,8 @@ class Shot:
     """One still: a clip's spec, where its camera stands, which part of the picture to keep.
 
     ``lines`` is the height of the picture in thousandths of the gallery's own: 1500 is half as
-    much again. ``enlarge`` repeats pixels. With ``minus`` the shot is the difference of two specs,
-    ``gain`` times as large, around mid-grey.
+    much again. ``enlarge`` repeats pixels. ``until`` is the last pass of the frame that is drawn.
+    With ``minus`` the shot is the difference of two specs, ``gain`` times as large, around grey.
     """
 
     label: str
@@ -46,6 +47,7 @@ class Shot:
     lines: int = 1000
     enlarge: int = 1
     wireframe: bool = False
+    until: str = PASSES[-1]
     minus: ClipSpec | None = None
     gain: float = 1.0
 
@@ -79,7 +81,9 @@ class Shots:
 
     def _render(self, shot: Shot) -> Pixels:
         width, height = (2 * round(side * shot.lines / 2000) for side in self.size)
-        renderer = self._studio.renderer(shot.spec.resized(width, height), wireframe=shot.wireframe)
+        renderer = self._studio.renderer(
+            shot.spec.resized(width, height), wireframe=shot.wireframe, until=shot.until
+        )
         return renderer.render(
             shot.azimuth_deg, time_s=2.0, elevation_deg=shot.elevation_deg
         ).pixels
