@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from renderer.clip_checks import clip_faults
 from renderer.detail import Detail
-from renderer.lod_choice import SWITCHINGS, LodPolicy
+from renderer.lod.choice import SWITCHINGS, LodPolicy
 
 DISTANCES: Final = ("macroscopic", "near", "medium", "far")
 MOTIONS: Final = ("orbit", "approach")

@@ -94,7 +94,7 @@ def _switching_faults(spec: ClipSpec) -> Iterator[str]:
         for side in sides:
             yield (
                 f"{side}_switching: {getattr(spec, f'{side}_switching')}; an eye that switches "
-                "needs a lod_policy, such as renderer.lod_policy.default_policy()"
+                "needs a lod_policy, such as renderer.lod.policy.default_policy()"
             )
         return
     if not sides:

@@ -17,7 +17,7 @@ from renderer.clip import ClipSpec
 from renderer.crowd.cube import CrowdCube
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import EyeModel
-from renderer.lod_path import Places, details_of, places_of_clip, places_of_view, shares_of
+from renderer.lod.path import Places, details_of, places_of_clip, places_of_view, shares_of
 from renderer.picture import SAMPLES, Picture, Pixels, Radiance
 from renderer.scene import Scene, build_scene, scene_key
 

@@ -20,7 +20,7 @@ from renderer.clip import ClipSpec
 from renderer.context import is_software
 from renderer.detail import LEVELS, Detail
 from renderer.frame import FrameRenderer
-from renderer.lod_path import Shares, places_of_view, shares_of
+from renderer.lod.path import Shares, places_of_view, shares_of
 from renderer.picture import Pixels
 from renderer.studio import Studio
 

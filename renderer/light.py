@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.park.cube_lookup import look_up
-from renderer.spherical_harmonics import sh_basis
+from renderer.spherical_harmonics import ambient_uniforms, sh_basis
 
 Vector = npt.NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class Light:
         return {
             "u_sun_direction": self.sky.sun_direction,
             "u_sun_irradiance": self.sky.sun_irradiance,
-            "u_ambient_sh": self.sky.ambient_sh,
+            **ambient_uniforms(self.sky.ambient_sh),
             "u_sun_shadow": self.shadow_map,
             "u_world_to_shadow": self.world_to_shadow,
         }

@@ -20,7 +20,7 @@ SHADERS: Final = frozenset({".glsl", ".vert", ".frag", ".comp"})
 @cache
 def code_version() -> str:
     """Return 16 hexadecimal digits over the renderer's own sources: same code, same frames."""
-    return _digest(path for path in ROOT.rglob("*") if path.suffix in SHADERS | {".py"})
+    return _digest(path for path in ROOT.rglob("*") if path.suffix in SHADERS | {".py", ".json"})
 
 
 @cache

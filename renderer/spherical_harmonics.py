@@ -5,10 +5,18 @@ The order is that of Ramamoorthi and Hanrahan 2001, eq. 3, as ``shaders/light.gl
 
 from __future__ import annotations
 
+from typing import Any, Final
+
 import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+
+# Ramamoorthi and Hanrahan 2001, eq. 13: c1 to c5 of the irradiance's polynomial.
+_TERMS: Final = np.array(
+    [0.886227, *(2 * 0.511664,) * 3, *(2 * 0.429043,) * 2, 0.743125, 2 * 0.429043, 0.429043]
+)
+_LESS_OF_ONE: Final = 0.247708
 
 
 def sh_basis(directions: Array) -> Array:
@@ -28,3 +36,30 @@ def sh_basis(directions: Array) -> Array:
         ],
         axis=-1,
     )
+
+
+def irradiance_terms(sh: Array) -> Array:
+    """Return the factors (9, 3) of 1, y, z, x, xy, yz, zz, xz and xx - yy of a unit normal.
+
+    Their sum is the irradiance that harmonics (9, 3) of radiance give a surface.
+    """
+    terms = _TERMS[:, None] * sh
+    terms[0] -= _LESS_OF_ONE * np.asarray(sh)[6]
+    return terms
+
+
+def terms_irradiance(terms: Array, normal: Array) -> Array:
+    """Return the irradiance (3,) on a surface with a unit normal (3,), as ``light.glsl`` does."""
+    x, y, z = normal
+    powers = np.array([1.0, y, z, x, x * y, y * z, z * z, x * z, x * x - y * y])
+    return np.asarray(np.maximum(powers @ terms, 0.0))
+
+
+def ambient_uniforms(sh: Array) -> dict[str, Any]:
+    """Return what ``light.glsl`` reads of ambient light from its harmonics (9, 3)."""
+    terms = irradiance_terms(sh)
+    return {
+        "u_ambient_sh": sh,
+        "u_ambient_terms": terms,
+        "u_ahead_irradiance": terms_irradiance(terms, np.array([0.0, 0.0, 1.0])),
+    }

@@ -22,8 +22,9 @@ PURE_RENDERER = (
             "clip",
             "clip_checks",
             "detail",
-            "lod_choice",
-            "lod_policy",
+            "lod",
+            "lod.choice",
+            "lod.policy",
             "manifest",
             "sources",
         )

@@ -180,7 +180,7 @@ def test_a_render_machine_needs_no_database_and_no_web(tmp_path: Path) -> None:
         "fastapi starlette uvicorn sqlalchemy alembic",
         "from study.commands.render import wanted\n"
         "from study.design.definition import read_definition\n"
-        "from renderer.batch import render_clip\n"
+        "from renderer.production.batch import render_clip\n"
         "from renderer.studio import Studio\n"
         "print(len(wanted(read_definition('thesis'), only=['1'], sizes=None, fps=None)))",
         tmp_path,

@@ -14,11 +14,11 @@ from types import ModuleType
 import pytest
 from distributed import LocalCluster
 
-from renderer import farm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.farm import BatchError, render_on
 from renderer.manifest import read_manifest
+from renderer.production import farm
+from renderer.production.farm import BatchError, render_on
 from study.cli import main
 from study.commands import cluster as clusters
 from study.commands.cluster import cluster

@@ -12,7 +12,7 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
-from renderer.lod_policy import default_policy
+from renderer.lod.policy import default_policy
 from study.cli import build_parser, main
 from study.commands.eye_options import spec_of, viewpoint_of
 from study.commands.listening import address_of, check_port, welcome

@@ -12,7 +12,7 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from renderer.flip import PIXELS_PER_DEGREE
+from renderer.encoding.flip import PIXELS_PER_DEGREE
 from renderer.picture import EXPOSURE
 
 Picture = npt.NDArray[np.float64]

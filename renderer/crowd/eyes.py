@@ -24,7 +24,7 @@ from renderer.detail import Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.sunlight import rims_table
 from renderer.light import Light
-from renderer.lod_policy import default_policy
+from renderer.lod.policy import default_policy
 
 PAINTED_PX: Final = 4.0  # smaller irises than this are painted: no mesh of a LoD has as few facets
 MOST_EYES: Final = 64  # crowd_eyes.glsl's

@@ -20,6 +20,7 @@ from renderer.eye.caustics import MAP_EDGE_MM
 from renderer.eye.chamber import chamber_irradiance
 from renderer.eye.lids import LidRims
 from renderer.program import Program
+from renderer.spherical_harmonics import ambient_uniforms
 
 Array = npt.NDArray[np.float64]
 
@@ -79,7 +80,8 @@ def _diffuse_picture(
         | {name: black for name in ("u_static_cube", "u_crowd_cube") if name in values}
         | {
             "u_sun_irradiance": np.zeros(3),
-            "u_ambient_sh": _UNIFORM_SH,
+            **ambient_uniforms(_UNIFORM_SH),
+            "u_plane_irradiance": np.full(3, math.pi),
             "u_shade_map": _texture(gl, np.ones((1, 1, 4))),
             "u_lid_rims": open_rims,
             "u_view_matrix": look_at(camera, centre),

@@ -20,6 +20,7 @@ from renderer.eye.kept import Kept
 from renderer.eye.lids import LidRims
 from renderer.eye.model import EyeModel, build_model
 from renderer.eye.morph import Morph
+from renderer.eye.silhouette import common_box
 from renderer.light import Light
 
 Shares = tuple[tuple[Detail, float], ...]
@@ -93,7 +94,7 @@ class Eyes:
             models[0].silhouette.draw(placed, models[0].shaded)
         else:
             self._set(models[0], camera, camera_mm, eye=eye)
-            models[0].mesh.render()
+            self._draw_open(models[0], np.asarray(projection) @ np.asarray(view_matrix))
 
     def shade(self, eye: int, *, view_matrix: Any, projection: Any, camera_mm: Any) -> None:
         """Prepare ``draw`` for a camera, outside of its queries and wire frames.
@@ -123,6 +124,14 @@ class Eyes:
         self._gl.wireframe = wireframe
         self._gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         target.use()
+
+    def _draw_open(self, model: EyeModel, world_to_clip: Any) -> None:
+        """Draw a mesh where the lids are open: what they hide costs as much as what is seen."""
+        target = self._gl.fbo
+        kept, eye_to_clip = target.scissor, world_to_clip @ model.values["u_eye_to_world"]
+        target.scissor = common_box(kept, model.shaded.box(target.viewport, eye_to_clip))
+        model.mesh.render()
+        target.scissor = kept
 
     def is_active(self, eye: int, uniform: str) -> bool:
         """Whether the eye's program still reads a uniform: off levels leave none behind."""

@@ -35,6 +35,7 @@ from renderer.eye.sunlight import (
 from renderer.iris.source import iris_of
 from renderer.light import Light
 from renderer.program import Program, build_program, detail_constants
+from renderer.spherical_harmonics import terms_irradiance
 
 Array = npt.NDArray[np.float64]
 
@@ -114,6 +115,7 @@ def build_model(
             kept=kept,
         ),
         **_shades(gl, placed, kept=kept, key=(Same(light), fingerprint(*rims_and_place))),
+        "u_plane_irradiance": terms_irradiance(placed["u_ambient_terms"], turn[:, 2]),
         "u_mirror": mirror,
         "u_iris_gain": np.full(3, gain),
     }

@@ -56,6 +56,11 @@ class Shaded:
         tested = moderngl.DEPTH_TEST if self._has_depth else moderngl.NOTHING
         gl.enable_only(moderngl.CULL_FACE | tested)
 
+    def box(self, viewport: Box, eye_to_clip: Array) -> Box:
+        """Return the scissor box in the target of what the lids leave open in a viewport."""
+        x, y, width, height = opening_box(self._opening, eye_to_clip, viewport[2:])
+        return viewport[0] + x, viewport[1] + y, width, height
+
     def uniforms(self, name: str) -> dict[str, Any]:
         """Return the picture as the sampler ``name`` and where it lies in the target."""
         return {name: self._texture, "u_view_origin_px": self._origin_px}
@@ -90,6 +95,14 @@ def opening_box(points: Array, eye_to_clip: Array, size: tuple[int, int]) -> Box
     low = np.clip(np.floor(pixels.min(axis=0)) - 2, 0, size)
     high = np.clip(np.ceil(pixels.max(axis=0)) + 2, low, size)
     return int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1])
+
+
+def common_box(first: Box, second: Box) -> Box:
+    """Return what two boxes (x, y, width, height) share; nothing has no width or height."""
+    low = np.maximum(first[:2], second[:2])
+    high = np.minimum(np.add(first[:2], first[2:]), np.add(second[:2], second[2:]))
+    width, height = np.maximum(high - low, 0)
+    return int(low[0]), int(low[1]), int(width), int(height)
 
 
 def detail_mesh(detail: Detail) -> Mesh:

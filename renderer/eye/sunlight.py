@@ -28,6 +28,7 @@ DIRECTION_MAP_PX: Final = 256  # refracted light's direction where no caustic is
 RELIEF_SHADE_PX: Final = {"high": 512, "ultra": 1024}  # per level of texture
 SHADE_MAP_PX: Final = 512  # 0.05 mm: finer than the softest edge of a shadow
 SCATTER_MM: Final = 0.3  # standard deviation of light's way in the sclera, our estimate
+SHADE_SEEP: Final = (0.72, 0.98, 1.05)  # powers of the sun's share, per channel
 RIM_SAMPLES: Final = 128
 RIM_EDGE_MM: Final = 18.0
 
@@ -97,16 +98,18 @@ def shade_map(gl: moderngl.Context, placed: Values) -> moderngl.Texture:
 
 
 def scattered_sun(gl: moderngl.Context, shade: moderngl.Texture) -> moderngl.Texture:
-    """Return the sun's share of a shade map as the white shows it, one channel.
+    """Return the sun's share of a shade map as the white shows it, per channel.
 
     Light that enters the sclera leaves it a few tenths of a millimetre away: shadows of single
-    lashes fade where the film's glints still show them sharp.
+    lashes fade where the film's glints still show them sharp, and red seeps furthest into shade.
     """
     size = shade.size[0]
     sun = np.frombuffer(shade.read(), np.float16).reshape(size, size, 4)[..., 3]
     texel_mm = 2 * GLOBE_RADIUS_MM / size
     spread = ndimage.gaussian_filter(sun.astype(np.float32), SCATTER_MM / texel_mm, mode="nearest")
-    return grey_texture(gl, spread, mips=False)
+    seeping = with_alpha(np.clip(spread, 0.0, 1.0)[..., None] ** SHADE_SEEP)
+    pixels = np.rint(seeping * 255).astype(np.uint8)
+    return clamped(gl.texture((size, size), 4, pixels.tobytes()))
 
 
 def relief_shade_map(

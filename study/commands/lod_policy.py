@@ -26,8 +26,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Measure, write the file and say what it holds."""
-    from renderer.lod_error import derive
-    from renderer.lod_policy import write_policy
+    from renderer.lod.error import derive
+    from renderer.lod.policy import write_policy
     from renderer.studio import Studio
 
     studio = Studio()

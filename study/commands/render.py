@@ -89,7 +89,7 @@ def run(options: argparse.Namespace) -> int:
             if executor is None:
                 records = _render_here(specs, folder, bar.show, choices)
             else:
-                from renderer.farm import render_on
+                from renderer.production.farm import render_on
 
                 records = render_on(
                     executor,
@@ -163,7 +163,7 @@ def _render_here(
     show: Callable[[float], None],
     choices: dict[str, bool],
 ) -> list[ClipRecord]:
-    from renderer.batch import render_clips
+    from renderer.production.batch import render_clips
     from renderer.studio import Studio
 
     studio = Studio()

@@ -95,7 +95,7 @@ def _by_size(spec: ClipSpec, options: argparse.Namespace) -> ClipSpec:
         return spec
     if options.effect or options.only_effect:
         raise CommandError("--switching: takes the levels from a policy; leave effects out")
-    from renderer.lod_policy import default_policy
+    from renderer.lod.policy import default_policy
 
     policy = default_policy()
     return replace(

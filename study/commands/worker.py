@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Render until stopped by Ctrl-C or SIGTERM."""
-    from renderer.batch import remove_parts
+    from renderer.production.batch import remove_parts
     from renderer.studio import Studio
     from study.data.database import open_database
     from study.worker import run_worker, stopping_on_signals
@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
 
 def rendering_with(studio: Studio) -> Render:
     """Return what a worker calls to have one clip rendered in this process's GL context."""
-    from renderer.batch import render_clip
+    from renderer.production.batch import render_clip
 
     return lambda spec, folder, progress: render_clip(
         spec, folder, source=studio, progress=progress

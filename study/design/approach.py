@@ -13,8 +13,8 @@ from pydantic import AfterValidator, BeforeValidator
 
 from renderer.camera import IRIS_PX
 from renderer.clip import DISTANCES
-from renderer.lod_choice import LodPolicy
-from renderer.lod_policy import default_policy, parse_policy
+from renderer.lod.choice import LodPolicy
+from renderer.lod.policy import default_policy, parse_policy
 from study.design.faults import Fault, dotted, refuse, unknown
 from study.design.parts import Part, Real, clip_value
 from study.design.raw import Data, rows_of, table_of

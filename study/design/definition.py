@@ -20,7 +20,7 @@ from pydantic import Field, ValidationError
 
 from renderer.clip import DIRECTIONS, PATHS, ClipSpec
 from renderer.detail import EFFECTS, Detail
-from renderer.lod_choice import LodPolicy
+from renderer.lod.choice import LodPolicy
 from study.design.approach import Approach, PolicyData, policy_of
 from study.design.checks import cross_faults
 from study.design.faults import DefinitionError, Fault, faults_of, suggestion

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from renderer.clip import ClipSpec
-from renderer.making import make_clip
+from renderer.production.making import make_clip
 
 ONCE, ALWAYS, FAULTY, DAMAGED = 90, 91, 92, 93  # killed once, killed always, an error, cut once
 
@@ -59,7 +59,7 @@ def fill(
     contents: Mapping[str, bytes],
     with_flip: bool = False,
 ) -> dict[str, Any]:
-    """Stand in for ``renderer.orders.fill_order``."""
+    """Stand in for ``renderer.production.orders.fill_order``."""
     del version, contents, with_flip
     clip = ClipSpec.from_dict(dict(spec))
     with (Path(os.environ["OCULARIST_TEST_FOLDER"]) / "orders.txt").open("a") as log:

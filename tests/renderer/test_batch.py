@@ -15,11 +15,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from renderer.batch import render_clip, render_clips
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.lod_policy import default_policy
+from renderer.lod.policy import default_policy
 from renderer.manifest import MANIFEST_NAME, read_manifest
+from renderer.production.batch import render_clip, render_clips
 
 SPEC = ClipSpec(
     left=Detail.uniform("low"), right=Detail.uniform("ultra"), width=96, height=64, duration_s=0.4

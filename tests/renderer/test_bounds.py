@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from renderer.bounds import Attempt, better, max_bytes, missed_bounds, next_quality
 from renderer.clip import ClipSpec
-from renderer.comparison import Fidelity
 from renderer.detail import Detail
+from renderer.encoding.bounds import Attempt, better, max_bytes, missed_bounds, next_quality
+from renderer.encoding.comparison import Fidelity
 
 SPEC = ClipSpec(left=Detail.uniform("low"), right=Detail.uniform("ultra"))
 LIMIT = 8_000_000

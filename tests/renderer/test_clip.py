@@ -9,7 +9,7 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
-from renderer.lod_policy import default_policy
+from renderer.lod.policy import default_policy
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from renderer.clip import ClipSpec
-from renderer.comparison import Comparison, flip_numbers, signal_numbers
 from renderer.detail import Detail
-from renderer.eye_boxes import frame_rectangles
+from renderer.encoding.comparison import Comparison, flip_numbers, signal_numbers
+from renderer.encoding.eye_boxes import frame_rectangles
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
 SPEC = ClipSpec(left=LOW, right=ULTRA, width=256, height=144, duration_s=0.2)
@@ -37,7 +37,7 @@ def test_errors_count_only_where_the_lods_differ(monkeypatch: pytest.MonkeyPatch
         comparison.take(number, raw)
     comparison.take_other(iter([other] * len(comparison.other_lods)))
     monkeypatch.setattr(
-        "renderer.comparison.decode",
+        "renderer.encoding.comparison.decode",
         lambda _path, numbers, **_size: dict.fromkeys(numbers, decoded),
     )
     found = comparison.compare(Path("clip.mp4"))

@@ -29,8 +29,8 @@ from renderer.detail import STANDARD_LODS, Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.caustics import caustic_map
 from renderer.group import GroupRenderer
-from renderer.lod_choice import LodPolicy, LodStep
-from renderer.lod_policy import default_policy
+from renderer.lod.choice import LodPolicy, LodStep
+from renderer.lod.policy import default_policy
 
 LOW = Detail.uniform("low")
 SPEC = ClipSpec(left=LOW, right=LOW, width=640, height=360, crowd=30)

@@ -9,7 +9,7 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 
-from renderer.encode import EncodingError, decode, open_encoder
+from renderer.encoding.encode import EncodingError, decode, open_encoder
 
 COLOURS = [(200, 120, 60), (128, 128, 128), (40, 60, 90), (235, 225, 215)]
 

@@ -7,7 +7,7 @@ import pytest
 
 from renderer.clip import DISTANCES, ClipSpec
 from renderer.detail import Detail
-from renderer.eye_boxes import eye_boxes, frame_rectangles
+from renderer.encoding.eye_boxes import eye_boxes, frame_rectangles
 
 LOW = Detail.uniform("low")
 

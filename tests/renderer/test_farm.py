@@ -13,12 +13,12 @@ from typing import Any
 
 import pytest
 
-from renderer import farm, orders
 from renderer.cache import cache_folder
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.farm import BatchError, render_on
 from renderer.manifest import read_manifest
+from renderer.production import farm, orders
+from renderer.production.farm import BatchError, render_on
 from renderer.sources import code_version
 from study.commands.pool import Pool
 

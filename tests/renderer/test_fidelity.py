@@ -7,7 +7,7 @@ import pytest
 
 from renderer.clip import DISTANCES, ClipSpec
 from renderer.detail import Detail
-from renderer.fidelity import eye_rectangles, psnr_db, ssim
+from renderer.encoding.fidelity import eye_rectangles, psnr_db, ssim
 
 LOW = Detail.uniform("low")
 

@@ -7,7 +7,7 @@ import importlib.util
 import numpy as np
 import pytest
 
-from renderer.flip import flip_map, is_installed
+from renderer.encoding.flip import flip_map, is_installed
 
 GREY = np.full((24, 32, 3), 120, np.uint8)
 

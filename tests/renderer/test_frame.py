@@ -11,11 +11,11 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.batch import render_clip
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, TABLE, Detail
-from renderer.fidelity import eye_rectangles
+from renderer.encoding.fidelity import eye_rectangles
 from renderer.frame import FrameRenderer
+from renderer.production.batch import render_clip
 from renderer.scene import Scene
 from renderer.studio import Studio
 
@@ -34,7 +34,7 @@ def render(gl: moderngl.Context, scene: Scene, spec: ClipSpec, azimuth_deg: floa
 
 def test_another_process_renders_the_same_clip_bit_for_bit(tmp_path: Path) -> None:
     code = (
-        "import sys; from pathlib import Path; from renderer.batch import render_clip;"
+        "import sys; from pathlib import Path; from renderer.production.batch import render_clip;"
         "from renderer.clip import ClipSpec; from renderer.studio import Studio; import json;"
         "spec = ClipSpec.from_dict(json.loads(sys.argv[2]));"
         "print(render_clip(spec, Path(sys.argv[1]), source=Studio()).raw_sha256)"

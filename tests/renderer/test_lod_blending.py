@@ -13,12 +13,12 @@ import pytest
 from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.encoding.fidelity import eye_rectangles
 from renderer.eye.geometry import eye_mesh
 from renderer.eye.morph import laid_on
-from renderer.fidelity import eye_rectangles
 from renderer.frame import FrameRenderer
-from renderer.lod_choice import LodPolicy, LodStep
-from renderer.lod_path import places_of_clip
+from renderer.lod.choice import LodPolicy, LodStep
+from renderer.lod.path import places_of_clip
 from renderer.scene import Scene
 
 LOW, HIGH = Detail.uniform("low"), Detail.uniform("high")

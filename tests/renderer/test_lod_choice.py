@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from renderer.detail import STANDARD_LODS, Detail
-from renderer.lod_choice import LodPolicy, LodStep, shares
-from renderer.lod_policy import (
+from renderer.lod.choice import LodPolicy, LodStep, shares
+from renderer.lod.policy import (
     Evidence,
     PolicyFile,
     default_policy,

@@ -7,8 +7,8 @@ import math
 import pytest
 
 from renderer.detail import Detail
-from renderer.lod_derivation import LodError, derive_policy, limit_px, limits_px
-from renderer.lod_policy import parse_policy, policy_text
+from renderer.lod.derivation import LodError, derive_policy, limit_px, limits_px
+from renderer.lod.policy import parse_policy, policy_text
 
 SIZES = (8.0, 16.0, 32.0, 64.0)
 LODS = {name: Detail.uniform(name) for name in ("low", "medium", "high")}

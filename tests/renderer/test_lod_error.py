@@ -13,12 +13,12 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.fidelity import eye_rectangles
+from renderer.encoding.fidelity import eye_rectangles
 from renderer.frame import FrameRenderer
-from renderer.lod_derivation import LodError
-from renderer.lod_error import Look, Sight, measure_errors, render_rectangles
-from renderer.lod_policy import DEFAULT_NAME, default_policy
-from renderer.lod_visibility import JUST_NOTICEABLE
+from renderer.lod.derivation import LodError
+from renderer.lod.error import Look, Sight, measure_errors, render_rectangles
+from renderer.lod.policy import DEFAULT_NAME, default_policy
+from renderer.lod.visibility import JUST_NOTICEABLE
 from renderer.scene import Scene
 from renderer.studio import Studio
 

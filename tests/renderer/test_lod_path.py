@@ -9,8 +9,8 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.lod_choice import LodPolicy, LodStep
-from renderer.lod_path import details_of, places_of_clip, places_of_view, shares_of
+from renderer.lod.choice import LodPolicy, LodStep
+from renderer.lod.path import details_of, places_of_clip, places_of_view, shares_of
 
 LOW, HIGH, ULTRA = (Detail.uniform(name) for name in ("low", "high", "ultra"))
 POLICY = LodPolicy(

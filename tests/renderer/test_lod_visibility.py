@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from skimage.color import deltaE_ciede2000, rgb2lab
 
-from renderer.lod_visibility import visible_difference
+from renderer.lod.visibility import visible_difference
 
 
 def plain(*colour: int) -> np.ndarray:

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from renderer.clip import ClipSpec
-from renderer.comparison import NOT_ASKED, SAME_LODS
 from renderer.detail import Detail
-from renderer.encode import decode
-from renderer.flip import WHY_NOT
-from renderer.making import make_clip
+from renderer.encoding.comparison import NOT_ASKED, SAME_LODS
+from renderer.encoding.encode import decode
+from renderer.encoding.flip import WHY_NOT
+from renderer.production.making import make_clip
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
 SMALL = ClipSpec(left=LOW, right=ULTRA, width=128, height=64, duration_s=0.2)
@@ -77,7 +77,7 @@ def test_lods_that_hardly_differ_are_reported_after_finer_attempts(tmp_path: Pat
 def test_noise_is_encoded_coarser_until_it_fits(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("renderer.bounds.MAX_BYTES", 250_000)
+    monkeypatch.setattr("renderer.encoding.bounds.MAX_BYTES", 250_000)
     hard = ClipSpec(left=LOW, right=LOW, width=192, height=108, duration_s=0.4)
     record = make_clip(hard, tmp_path / "clip.mp4", source=Clouds(roughness=190))
     assert record.crf is not None
@@ -90,7 +90,7 @@ def test_noise_is_encoded_coarser_until_it_fits(
 def test_what_cannot_fit_is_kept_and_marked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("renderer.bounds.MAX_BYTES", 5000)
+    monkeypatch.setattr("renderer.encoding.bounds.MAX_BYTES", 5000)
     record = make_clip(SMALL, tmp_path / "clip.mp4", source=Clouds(), with_flip=False)
     found = f"{record.file_bytes / 1e6:.2f}"
     assert record.missed == [f"the file has {found} MB; at most 0.00 MB are accepted"]
@@ -123,6 +123,6 @@ def test_flip_that_was_not_measured_is_null_and_says_why(
     record = make_clip(alike, tmp_path / "b.mp4", source=source)
     assert record.flip_encoding == record.flip_rectangle is not None
     assert (record.flip_lods, record.flip_note) == (None, SAME_LODS)
-    monkeypatch.setattr("renderer.comparison.is_installed", lambda: False)
+    monkeypatch.setattr("renderer.encoding.comparison.is_installed", lambda: False)
     record = make_clip(SMALL, tmp_path / "c.mp4", source=source)
     assert (record.flip_encoding, record.flip_note) == (None, WHY_NOT)

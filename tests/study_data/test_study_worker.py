@@ -293,7 +293,7 @@ SHARED = """
 import sys
 from pathlib import Path
 from conftest import fake_render
-from renderer import batch
+from renderer.production import batch
 from renderer.manifest import read_manifest
 from study.data.database import open_database
 from study.worker import run_worker

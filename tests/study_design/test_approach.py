@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from renderer.detail import EFFECTS, Detail
-from renderer.lod_policy import default_policy
+from renderer.lod.policy import default_policy
 from study.design.audit import largest_iris_px, warnings
 from study.design.definition import StudyDefinition, parse_definition, read_definition
 from study.design.faults import DefinitionError

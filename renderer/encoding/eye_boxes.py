@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from renderer.clip import ClipSpec
-from renderer.encode import Box
-from renderer.fidelity import Rectangle, eye_rectangles
+from renderer.encoding.encode import Box
+from renderer.encoding.fidelity import Rectangle, eye_rectangles
 
 # The lids' opening as columns: from and to in shares of the rectangle's width, and how much of its
 # height. An almond and a margin of a macroblock (16 pixels) or so; lids and lashes get no more.

@@ -17,10 +17,10 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.clip import ClipSpec
-from renderer.encode import decode
-from renderer.eye_boxes import frame_rectangles
-from renderer.fidelity import psnr_db, ssim
-from renderer.flip import WHY_NOT, flip_map, is_installed
+from renderer.encoding.encode import decode
+from renderer.encoding.eye_boxes import frame_rectangles
+from renderer.encoding.fidelity import psnr_db, ssim
+from renderer.encoding.flip import WHY_NOT, flip_map, is_installed
 
 Pixels = npt.NDArray[np.uint8]
 EyePair = tuple[Pixels, Pixels]

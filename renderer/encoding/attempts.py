@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-from renderer.bounds import Attempt, better, max_bytes, next_quality
 from renderer.clip import ClipSpec
-from renderer.comparison import Comparison
-from renderer.encode import QUALITY, encode_again
-from renderer.eye_boxes import eye_boxes
+from renderer.encoding.bounds import Attempt, better, max_bytes, next_quality
+from renderer.encoding.comparison import Comparison
+from renderer.encoding.encode import QUALITY, encode_again
+from renderer.encoding.eye_boxes import eye_boxes
 
 MAX_ATTEMPTS: Final = 3  # each takes about a third of the time of rendering
 

@@ -11,7 +11,7 @@ from functools import lru_cache
 from renderer.camera import iris_px, iris_px_of_frame
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.lod_choice import shares
+from renderer.lod.choice import shares
 
 Places = tuple[float, float]
 Shares = tuple[tuple[Detail, float], ...]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from renderer.clip import ClipSpec
-from renderer.comparison import Fidelity
+from renderer.encoding.comparison import Fidelity
 
 MAX_BYTES: Final = 8_000_000  # of a clip of 5 s with 1920 x 1080 pixels or fewer
 REFERENCE_S: Final = 5.0

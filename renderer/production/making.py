@@ -13,14 +13,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from renderer.attempts import settle
-from renderer.bounds import Attempt, max_bytes, missed_bounds
 from renderer.camera import iris_px_of_frame
 from renderer.clip import ClipSpec
-from renderer.comparison import Comparison
-from renderer.encode import open_encoder
-from renderer.eye_boxes import eye_boxes
-from renderer.lod_path import places_of_clip
+from renderer.encoding.attempts import settle
+from renderer.encoding.bounds import Attempt, max_bytes, missed_bounds
+from renderer.encoding.comparison import Comparison
+from renderer.encoding.encode import open_encoder
+from renderer.encoding.eye_boxes import eye_boxes
+from renderer.lod.path import places_of_clip
 from renderer.manifest import ClipRecord
 from renderer.sources import code_version
 

@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any, Final
 
 from renderer.detail import STANDARD_LODS, Detail
-from renderer.lod_choice import LodPolicy, LodStep
+from renderer.lod.choice import LodPolicy, LodStep
 from renderer.manifest import write_atomically
 
 SCHEMA: Final = 1
-DEFAULT_NAME: Final = "lod_policy.json"
+DEFAULT_NAME: Final = "policy.json"  # beside this module
 _KEYS: Final = {"schema", "measure", "hysteresis", "band", "steps", "provenance"}
 _STEP_KEYS: Final = {"lod", "levels", "up_to_iris_px", "interval_px", "ms"}
 
@@ -43,8 +43,8 @@ class PolicyFile:
 
 @cache
 def default_policy() -> LodPolicy:
-    """Return the policy that comes with the renderer, derived by ``renderer.lod_derivation``."""
-    text = (resources.files("renderer") / DEFAULT_NAME).read_text(encoding="utf-8")
+    """Return the policy that comes with the renderer, derived by ``renderer.lod.derivation``."""
+    text = (resources.files("renderer.lod") / DEFAULT_NAME).read_text(encoding="utf-8")
     return parse_policy(text, source=DEFAULT_NAME).policy
 
 

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from renderer.detail import Detail
-from renderer.lod_choice import LodPolicy, LodStep
-from renderer.lod_policy import Evidence, PolicyFile
+from renderer.lod.choice import LodPolicy, LodStep
+from renderer.lod.policy import Evidence, PolicyFile
 
 
 @dataclass(frozen=True)

@@ -43,8 +43,8 @@ def fill_order(
     ``spec`` is ``ClipSpec.to_dict``'s, ``version`` the asker's ``code_version``. ``contents`` holds
     files that the spec names by path, under the spec's name of the path. One that is neither there
     nor on this machine is asked for: the reply is then ``{"wanted": [name, ...]}`` and nothing is
-    rendered. ``with_flip`` is ``renderer.making.make_clip``'s. Raises VersionMismatchError; every
-    error carries this machine's name as a note.
+    rendered. ``with_flip`` is ``renderer.production.making.make_clip``'s. Raises
+    VersionMismatchError; every error carries this machine's name as a note.
     """
     try:
         _check_version(version)
@@ -100,7 +100,7 @@ def _holds(path: Path, sha256: str) -> bool:
 
 
 def _make(spec: ClipSpec, with_flip: bool) -> dict[str, Any]:
-    from renderer.making import make_clip
+    from renderer.production.making import make_clip
 
     with tempfile.TemporaryDirectory(prefix="ocularist-") as folder:
         path = Path(folder) / "clip.mp4"

@@ -21,10 +21,10 @@ from concurrent.futures import (
 from pathlib import Path
 from typing import Any, Final
 
-from renderer.batch import keep_record, remove_parts
 from renderer.clip import PATHS, ClipSpec
 from renderer.manifest import ClipRecord, read_manifest, write_atomically
-from renderer.orders import WANTED, VersionMismatchError, fill_order, hash_name
+from renderer.production.batch import keep_record, remove_parts
+from renderer.production.orders import WANTED, VersionMismatchError, fill_order, hash_name
 from renderer.sources import code_version
 
 MAX_ATTEMPTS: Final = 3  # a clip whose process dies as often is given up: it is the reason

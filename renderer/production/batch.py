@@ -15,8 +15,8 @@ from functools import partial
 from pathlib import Path
 
 from renderer.clip import ClipSpec
-from renderer.making import FrameSource, Progress, make_clip
 from renderer.manifest import ClipRecord, read_manifest, write_manifest
+from renderer.production.making import FrameSource, Progress, make_clip
 
 
 def render_clips(

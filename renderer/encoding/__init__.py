@@ -1,0 +1,1 @@
+"""Frames to video, and what the video keeps of them."""

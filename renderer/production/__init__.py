@@ -1,0 +1,1 @@
+"""Clips made: one, a folder of them, on one machine or many."""
