@@ -6,7 +6,8 @@ only for the LoDs that a frame asks for.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -86,15 +87,16 @@ class Eyes:
             self.shade(eye, view_matrix=view_matrix, projection=projection, camera_mm=camera_mm)
         self._gl.enable(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         placed = camera | {"u_eye_to_world": models[0].values["u_eye_to_world"]}
-        if len(models) > 1:
-            coarse, fine = models
-            share = self._shares[eye][1][1]
-            self._morph(eye).draw(placed, coarse=coarse.shaded, fine=fine.shaded, share=share)
-        elif models[0].silhouette:
-            models[0].silhouette.draw(placed, models[0].shaded)
-        else:
-            self._set(models[0], camera, camera_mm, eye=eye)
-            self._draw_open(models[0], np.asarray(projection) @ np.asarray(view_matrix))
+        with self._between_lids(models[0], np.asarray(projection) @ np.asarray(view_matrix)):
+            if len(models) > 1:
+                coarse, fine = models
+                share = self._shares[eye][1][1]
+                self._morph(eye).draw(placed, coarse=coarse.shaded, fine=fine.shaded, share=share)
+            elif models[0].silhouette:
+                models[0].silhouette.draw(placed, models[0].shaded)
+            else:
+                self._set(models[0], camera, camera_mm, eye=eye)
+                models[0].mesh.render()
 
     def shade(self, eye: int, *, view_matrix: Any, projection: Any, camera_mm: Any) -> None:
         """Prepare ``draw`` for a camera, outside of its queries and wire frames.
@@ -125,17 +127,20 @@ class Eyes:
         self._gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         target.use()
 
-    def _draw_open(self, model: EyeModel, world_to_clip: Any) -> None:
-        """Draw a mesh where the lids are open: what they hide costs as much as what is seen."""
-        target = self._gl.fbo
-        kept, eye_to_clip = target.scissor, world_to_clip @ model.values["u_eye_to_world"]
-        target.scissor = common_box(kept, model.shaded.box(target.viewport, eye_to_clip))
-        model.mesh.render()
-        target.scissor = kept
-
     def is_active(self, eye: int, uniform: str) -> bool:
         """Whether the eye's program still reads a uniform: off levels leave none behind."""
         return self._drawn(eye)[0].program.is_active(uniform)
+
+    @contextmanager
+    def _between_lids(self, model: EyeModel, world_to_clip: Any) -> Iterator[None]:
+        """Confine drawing to where lids are open: what they hide costs as much as what is seen."""
+        target = self._gl.fbo
+        kept, eye_to_clip = target.scissor, world_to_clip @ model.values["u_eye_to_world"]
+        target.scissor = common_box(kept, model.shaded.box(target.viewport, eye_to_clip))
+        try:
+            yield
+        finally:
+            target.scissor = kept
 
     def _drawn(self, eye: int) -> list[EyeModel]:
         """Return the models that an eye is drawn with.

@@ -52,7 +52,7 @@ IrisLight light_on_iris(vec2 x_mm, Surface s) {
     float reaching = s.sun, gain = max(toward_sun.z, 0.0);
     light.w_eye = light_direction(x_mm);
     light.painted = vec3(0.0);
-    light.ambient = ambient_irradiance(turned_to_world(vec3(0.0, 0.0, 1.0))) * s.sky;
+    light.ambient = plane_irradiance() * s.sky;
     if (CAUSTICS >= HIGH && CAUSTICS_PAINTED == 0) {
         // Radiance falls by n^2 on its way out of the chamber (Nicodemus): counted here, where the
         // way in is counted, so that both stand or fall together.

@@ -22,8 +22,7 @@ vec3 caustic_at(vec2 x_mm) {
 }
 
 vec3 chamber_at(vec2 x_mm) {
-    vec3 even = ambient_irradiance(turned_to_world(vec3(0.0, 0.0, 1.0)));
-    return EVEN_SKY * CORNEA_IOR * CORNEA_IOR * even * shade_at(vec3(x_mm, APEX_MM)).rgb;
+    return EVEN_SKY * CORNEA_IOR * CORNEA_IOR * plane_irradiance() * shade_at(vec3(x_mm, APEX_MM)).rgb;
 }
 
 vec3 light_direction(vec2 x_mm);

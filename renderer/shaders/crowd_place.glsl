@@ -16,6 +16,7 @@ float u_mirror;
 
 const float RIM_EDGE_MM = 18.0;
 const float LID_WALL_MM = 1.6;   // as high as a lid's margin is thick
+const vec3 SHADE_SEEP = vec3(0.72, 0.98, 1.05);  // renderer/eye/sunlight.py
 
 void place_eye() {
     u_eye_to_world = u_crowd_eyes[v_eye].eye_to_world;
@@ -50,4 +51,6 @@ vec4 shade_at(vec3 p_eye) {
     return vec4(u_crowd_eyes[v_eye].facts.w * sky_past_lids(p_eye), sun_past_lids(p_eye, 0.35));
 }
 
-float scattered_sun_at(vec3 p_eye) { return sun_past_lids(p_eye, 0.7); }
+vec3 scattered_sun_at(vec3 p_eye) { return pow(vec3(sun_past_lids(p_eye, 0.7)), SHADE_SEEP); }
+
+vec3 plane_irradiance() { return ambient_irradiance(u_eye_to_world[2].xyz); }

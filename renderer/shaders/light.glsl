@@ -4,18 +4,19 @@
 uniform vec3 u_sun_direction;      // unit, towards the sun
 uniform vec3 u_sun_irradiance;     // on a surface that faces the sun
 uniform vec3 u_ambient_sh[9];      // radiance of the surroundings without the sun
+uniform vec3 u_ambient_terms[9];   // their irradiance: factors of 1 y z x xy yz zz xz xx-yy
+uniform vec3 u_ahead_irradiance;   // on a surface that faces as the head does
 uniform sampler2D u_sun_shadow;    // depth seen from the sun, 0 near .. 1 far
 uniform mat4 u_world_to_shadow;    // world -> clip space of the shadow map
 
-// Ramamoorthi and Hanrahan 2001, eq. 13: irradiance from the first nine coefficients.
+// Ramamoorthi and Hanrahan 2001, eq. 13: irradiance from the first nine coefficients. Their
+// constants are in the terms (renderer/spherical_harmonics.py).
 vec3 ambient_irradiance(vec3 n) {
-    const float c1 = 0.429043, c2 = 0.511664, c3 = 0.743125, c4 = 0.886227, c5 = 0.247708;
-    vec3 e = c1 * u_ambient_sh[8] * (n.x * n.x - n.y * n.y) + c3 * u_ambient_sh[6] * n.z * n.z
-           + c4 * u_ambient_sh[0] - c5 * u_ambient_sh[6]
-           + 2.0 * c1 * (u_ambient_sh[4] * n.x * n.y + u_ambient_sh[7] * n.x * n.z
-                         + u_ambient_sh[5] * n.y * n.z)
-           + 2.0 * c2 * (u_ambient_sh[3] * n.x + u_ambient_sh[1] * n.y + u_ambient_sh[2] * n.z);
-    return max(e, vec3(0.0));
+    vec3 x = u_ambient_terms[3] + n.x * u_ambient_terms[8] + n.y * u_ambient_terms[4]
+           + n.z * u_ambient_terms[7];
+    vec3 y = u_ambient_terms[1] - n.y * u_ambient_terms[8] + n.z * u_ambient_terms[5];
+    vec3 z = u_ambient_terms[2] + n.z * u_ambient_terms[6];
+    return max(u_ambient_terms[0] + n.x * x + n.y * y + n.z * z, vec3(0.0));
 }
 
 // Share of the sun that reaches a point: percentage-closer filtering over 3 x 3 texels, 2 x 2

@@ -78,7 +78,7 @@ vec3 mirrored(Surface s, vec3 n) {
     vec3 d_world = turned_to_world(d);
     float past_face = OWN_FACE == 1 ? smoothstep(-0.15, 0.25, d_world.z) : 1.0;
     vec2 past = past_lids_and_lashes(s.p_eye, d, 0.9);
-    vec3 shaded = ambient_irradiance(vec3(0.0, 0.0, 1.0)) * (0.5 / PI);
+    vec3 shaded = u_ahead_irradiance * (0.5 / PI);
     float cone = 2.0 * u_mm_per_px / CORNEA_RADIUS_MM + 4.0 * sqrt(s.film_variance);
     if (SCLERA < HIGH || REFLECTION < HIGH) cone += (1.0 - s.cornea) * PLAIN_BLUR;
     vec3 beyond = mix(LASH_REFLECTANCE * shaded, surroundings(d_world, cone), past.y);

@@ -7,7 +7,6 @@ uniform sampler2D u_sclera_normal;
 uniform vec3 u_sclera_mean;
 
 const float SCLERA_EDGE = 1.91986218;           // 110 degrees: where the maps end
-const vec3 SHADE_SEEP = vec3(0.72, 0.98, 1.05);
 const vec3 SCATTER_WRAP = vec3(0.30, 0.17, 0.12);  // light bleeds past the terminator, red furthest
 
 vec2 sclera_uv(vec3 direction) {
@@ -53,9 +52,7 @@ vec3 sclera_radiance(Surface s) {
     vec3 n = s.n_tissue;
     float cosine = dot(n, turned_to_eye(u_sun_direction));
     vec3 wrapped = max((cosine + SCATTER_WRAP) / ((1.0 + SCATTER_WRAP) * (1.0 + SCATTER_WRAP)), 0.0);
-    // Light seeps into the lids' shade, red furthest.
-    float reaching = scattered_sun_at(s.p_eye);
-    vec3 sun = u_sun_irradiance * pow(vec3(reaching), SHADE_SEEP) * wrapped;
+    vec3 sun = u_sun_irradiance * scattered_sun_at(s.p_eye) * wrapped;
     vec3 ambient = ambient_irradiance(turned_to_world(n)) * s.sky;
     // The map shows the tissue face-on through the tear film: at a slant the film mirrors more, and
     // lets that much less of the tissue's light through.

@@ -9,6 +9,7 @@ import numpy.typing as npt
 from renderer.eye.anatomy import GLOBE_RADIUS_MM, shader_constants
 from renderer.eye.lids import LidRims
 from renderer.program import build_program
+from renderer.spherical_harmonics import ambient_uniforms
 
 Map = npt.NDArray[np.float32]
 
@@ -46,7 +47,7 @@ def shade(
         u_sun_direction=(0.0, np.sin(elevation), np.cos(elevation)),
         u_eye_to_world=np.eye(4),
         u_map_px=SIZE_PX,
-        u_ambient_sh=np.asarray(sky),
+        **ambient_uniforms(np.asarray(sky)),
     )
     target = gl.framebuffer([gl.texture((SIZE_PX, SIZE_PX), 4, dtype="f4")])
     with gl.scope(target, moderngl.NOTHING):
