@@ -61,7 +61,9 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     x, y, z = (sheet.points_mm[..., axis] for axis in range(3))
     between = np.sin(np.pi * b)
     room = _ease(sheet.opening_mm / FULL_OPENING_MM)
-    crescent = x - drawn + CRESCENT_MM * (2 * b - 1) ** 2  # lines of equal depth bend around the pupil
+    crescent = (
+        x - drawn + CRESCENT_MM * (2 * b - 1) ** 2
+    )  # lines of equal depth bend around the pupil
     foot = _caruncle_foot(x - 0.3 * drawn, y, b)
     dome = room * _dome(foot)
     lake = room * np.exp(-(((foot - 1.12) / 0.2) ** 2)) * between * _ease((x - BUMP_MM[0]) / 1.2)
@@ -96,7 +98,7 @@ def _caruncle_foot(x: Floats, y: Floats, b: Floats) -> Floats:
     """Return 0 at the caruncle's middle, 1 at its uneven foot, more beyond."""
     middle, temple, nose = BUMP_MM
     across, up = (x - middle) / np.where(x > middle, temple, nose), (b - 0.46) / 0.5
-    uneven = 1 + 0.06 * np.sin(2.9 * y + 1.7 * x) + 0.04 * np.sin(5.3 * y - 2.1 * x + 1.0)
+    uneven = 1 + 0.045 * np.sin(2.9 * y + 1.7 * x) + 0.04 * np.sin(5.3 * y - 2.1 * x + 1.0)
     return np.asarray(np.hypot(across, up) * uneven)
 
 
@@ -111,7 +113,7 @@ def _plica(x: Floats, b: Floats) -> tuple[Floats, Floats]:
 
     The edge looks towards the cornea; behind it the fold sinks to the lake of tears.
     """
-    way = PLICA_MM + 0.7 * (2 * b - 1) ** 2 - x
+    way = PLICA_MM + 4.0 * (b - 0.45) ** 2 + 0.07 * np.sin(7.0 * b + 1.0) - x
     rise = _ease(way / PLICA_EDGE_MM + 0.5)
     fall = _ease((way - 0.5 * PLICA_EDGE_MM) / PLICA_WIDTH_MM)
     return rise * (1 - fall), way
@@ -152,7 +154,9 @@ def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
         np.zeros(a.size),
         np.zeros(a.size),
         _ease(a / 0.45).ravel(),
-        _ease((np.hypot(*np.moveaxis(sheet.points_mm[..., :2], -1, 0)) - start) / (end - start)).ravel(),
+        _ease(
+            (np.hypot(*np.moveaxis(sheet.points_mm[..., :2], -1, 0)) - start) / (end - start)
+        ).ravel(),
     )
 
 

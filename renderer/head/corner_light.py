@@ -21,6 +21,7 @@ from renderer.head.skin_light import SkinLight, scatter, sky_radiance
 from renderer.light import Sky
 
 LID_FRONT_MM: Final = (1.4, 0.4)  # the lids' middle surface over globe, and over what stands out
+RESTS_MM: Final = 1.0  # off the globe: what is nearer counts as lying on it
 OUT_MM: Final = (12.3, 15.0)  # from the globe's centre: what stands out between the lids
 SOFTNESS_MM: Final = (0.8, 0.35)  # of the lids' shade from the sky, and from the sun ...
 SOFTENING: Final = 0.12  # ... and per mm of way
@@ -30,8 +31,10 @@ LASH_REFLECTANCE: Final = (0.02, 0.012, 0.008)
 LASH_REACH_MM: Final = 7.2
 LASH_CURL: Final = 0.09  # height over the rim per square of the way, 1/mm
 LASH_COVER: Final = 0.324  # of lashes seen square on: 2 x 0.9 x 0.03 mm x 6 a mm
+SUN_COVER: Final = 0.29  # of the three rows of hairs, one behind the other, that the sun meets
 LASH_ENDS_MM: Final = (10.7, 12.2)  # off the middle
-SCATTER_WRAP: Final = (0.30, 0.17, 0.12)  # as in ``sclera.glsl``
+MIRRORED: Final = 0.4  # of the sky that the point sees
+SCATTER_WRAP: Final = (0.30, 0.20, 0.16)  # thicker tissue than ``sclera.glsl`` has
 SHADE_SEEP: Final = (0.72, 0.98, 1.05)
 
 
@@ -48,7 +51,7 @@ def light_corner(
     """Return the light on one eye's corners; ``sun`` (n,) is how much of it the head leaves."""
     side = np.array([1.0 if eye else -1.0, 1.0, 1.0])  # patch space has the temple at +x
     rims = LidRims(*rim_curves(pose, samples=513))
-    places = to_patch(points_mm, eye)
+    places, lies = _settled(to_patch(points_mm, eye))
     rays = _hemispheres(normals)
     towards = rays * side
     every = np.broadcast_to(places[:, None], rays.shape).reshape(-1, 3)
@@ -61,23 +64,38 @@ def light_corner(
     share = (lids * lashes).reshape(rays.shape[:2]).mean(axis=1)
 
     to_sun = np.broadcast_to(sky.sun_direction * side, places.shape)
-    sunny, hairs = past_lids(places, to_sun, rims, SOFTNESS_MM[1])
+    sunny, hairs = past_lids(places, to_sun, rims, SOFTNESS_MM[1], one_beam=True)
     reaching = sun * sunny * hairs
     wrap = np.array(SCATTER_WRAP)
     cosine = (normals @ sky.sun_direction)[:, None]
     wrapped = np.maximum((cosine + wrap) / (1 + wrap) ** 2, 0.0)
     direct = sky.sun_irradiance * reaching[:, None] ** np.array(SHADE_SEEP) * wrapped
-    diffuse = scatter(points_mm, triangles, ambient + direct / np.pi)
+    diffuse = ambient + direct / np.pi
+    # On the globe the light has seeped in as its shader lets it.
+    deep = scatter(points_mm, triangles, diffuse)
+    diffuse = deep + lies * (diffuse - deep)
     # What mirrors at a slant sees more of lids and nose than what lies beneath.
-    return SkinLight(diffuse, share * share, reaching)
+    return SkinLight(diffuse, MIRRORED * share * share, reaching)
+
+
+def _settled(points: Floats) -> tuple[Floats, Floats]:
+    """Return points (n, 3) of a sheet that softly leaves the globe, laid on it where near,
+
+    and how much (n, 1) it lies there, 0 to 1.
+    """
+    length = np.linalg.norm(points, axis=1, keepdims=True)
+    over = np.maximum(length - GLOBE_RADIUS_MM, 0.0)
+    off = np.minimum(over / RESTS_MM, 1.0) ** 2
+    return np.asarray(points * ((GLOBE_RADIUS_MM + over * off) / length)), 1.0 - off
 
 
 def past_lids(
-    points: Floats, directions: Floats, rims: LidRims, softness_mm: float
+    points: Floats, directions: Floats, rims: LidRims, softness_mm: float, *, one_beam: bool = False
 ) -> tuple[Floats, Floats]:
     """Return what shares (n,) of rays from points (n, 3) pass the lids, and their lashes.
 
-    ``rims`` and points share a space whose origin is the globe's centre.
+    ``rims`` and points share a space whose origin is the globe's centre. Of ``one_beam``, a single
+    direction, hairs take what they take of sunlight; else what they take of a sky on average.
     """
     along = (points * directions).sum(axis=-1)
     square = (points * points).sum(axis=-1)
@@ -92,10 +110,11 @@ def past_lids(
     room = np.minimum(upper - at[:, 1], at[:, 1] - lower)
     soft = softness_mm + SOFTENING * reach
     share = np.clip(0.5 + room / (2 * soft), 0.0, 1.0)
-    return share * share * (3 - 2 * share), 1.0 - _lash_cover(at, directions, upper - at[:, 1])
+    taken = _lash_cover(at, directions, upper - at[:, 1], one_beam=one_beam)
+    return share * share * (3 - 2 * share), 1.0 - taken
 
 
-def _lash_cover(at: Floats, directions: Floats, room: Floats) -> Floats:
+def _lash_cover(at: Floats, directions: Floats, room: Floats, *, one_beam: bool) -> Floats:
     """Return the share (n,) that lashes take on average of rays that leave the lids' front."""
     climb = directions[:, 1] / np.maximum(directions[:, 2], 0.05)
     root2 = climb * climb - 4 * LASH_CURL * room
@@ -105,7 +124,11 @@ def _lash_cover(at: Floats, directions: Floats, room: Floats) -> Floats:
     slant = np.minimum(1 / np.sqrt(np.maximum(1 - directions[:, 2] ** 2, 0.04)), 2.5)
     start, end = LASH_ENDS_MM
     out = np.clip((np.abs(at[:, 0]) - start) / (end - start), 0.0, 1.0)
-    taken = LASH_COVER * slant * np.maximum(1 - way * way, 0.0) * (1 - out * out * (3 - 2 * out))
+    if one_beam:  # hairs of different lengths: the shade thins out from the roots on
+        taken = SUN_COVER * np.maximum(1 - way, 0.0) ** 1.5
+    else:
+        taken = LASH_COVER * slant * np.maximum(1 - way * way, 0.0)
+    taken = taken * (1 - out * out * (3 - 2 * out))
     return np.asarray(np.where(meets, np.minimum(taken, 0.9), 0.0))
 
 

@@ -29,7 +29,7 @@ const vec3 CAVITY = vec3(0.22, 0.42, 0.48);  // light lost at the bottom of furr
 const vec3 BLOOD = vec3(0.10, 0.46, 0.42);   // absorption per unit of the maps
 const vec3 MELANIN = vec3(0.34, 0.50, 0.62);
 const float SKYLINE = 0.55;                  // how much more light a facet gets that tilts upwards
-const float VESSELS = 0.8, FLUSH = 0.3;      // of conjunctiva, against the lids' and the face's
+const float VESSELS = 0.5, FLUSH = 0.3;      // of conjunctiva, against the lids' and the face's
 const float WET_FOLLOWS = 0.7;               // how much of the relief a film of tears shows
 const float FACET_M2 = 0.045, OILY_M2 = 0.0085;  // Beckmann's m^2 of the two lobes, relief apart
 
