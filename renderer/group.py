@@ -59,6 +59,11 @@ class GroupRenderer:
         self._draw(azimuth_deg, time_s, elevation_deg)
         return Frame(self._picture.finish(), (0, 0))
 
+    def show(self, azimuth_deg: float = 0.0, *, time_s: float = 0.0) -> None:
+        """Draw and tone map one frame and read nothing back."""
+        self._draw(azimuth_deg, time_s, 0.0)
+        self._picture.show()
+
     def render_radiance(
         self, azimuth_deg: float = 0.0, *, time_s: float = 0.0, elevation_deg: float = 0.0
     ) -> Radiance:

@@ -11,11 +11,11 @@ import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Protocol
 
 import moderngl
 
-from renderer.frame import FrameRenderer
+from renderer.frame import Frame
 
 SOFTWARE: Final = ("llvmpipe", "softpipe", "swr", "swiftshader", "software", "basic render")
 WALL, QUERY = "wall time", "timer queries"
@@ -25,7 +25,20 @@ AZIMUTHS_DEG: Final = (-50.0, 35.0, -20.0, 5.0, 50.0, -35.0, 20.0, -5.0, 0.0)
 NUDGE_DEG: Final = 0.01  # between the frames of a round: nothing kept for a camera is there yet
 FPS: Final = 30
 
-Timer = Callable[[FrameRenderer, float, float], float]
+
+class Timed(Protocol):
+    """What draws frames: of a clip, or of a group of people."""
+
+    def render(self, azimuth_deg: float, *, time_s: float) -> Frame:
+        """Draw a frame and read it back."""
+        ...
+
+    def show(self, azimuth_deg: float, *, time_s: float) -> None:
+        """Draw a frame and leave it where it is."""
+        ...
+
+
+Timer = Callable[[Timed, float, float], float]
 
 
 def clock_of(gl_renderer: str) -> str:
@@ -37,13 +50,13 @@ def clock_of(gl_renderer: str) -> str:
 def timer_of(gl: moderngl.Context, clock: str) -> Timer:
     """Return a function of renderer, azimuth (degrees) and scene time (s): a frame's ms."""
 
-    def wall(frames: FrameRenderer, azimuth_deg: float, time_s: float) -> float:
+    def wall(frames: Timed, azimuth_deg: float, time_s: float) -> float:
         gl.finish()
         started = time.perf_counter()
         frames.render(azimuth_deg, time_s=time_s)
         return (time.perf_counter() - started) * 1e3
 
-    def query(frames: FrameRenderer, azimuth_deg: float, time_s: float) -> float:
+    def query(frames: Timed, azimuth_deg: float, time_s: float) -> float:
         gl.finish()
         spent = gl.query(time=True)
         with spent:
@@ -53,9 +66,7 @@ def timer_of(gl: moderngl.Context, clock: str) -> Timer:
     return {WALL: wall, QUERY: query}[clock]
 
 
-def interleaved(
-    variants: Sequence[FrameRenderer], *, rounds: int, timer: Timer
-) -> list[list[float]]:
+def interleaved(variants: Sequence[Timed], *, rounds: int, timer: Timer) -> list[list[float]]:
     """Time variants in turn, A B, B A, A B: what slows the machine for a while slows them all.
 
     Returns a list of ``rounds`` milliseconds per variant. Within a round all have the same camera

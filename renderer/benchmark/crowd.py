@@ -1,7 +1,8 @@
-"""A frame with more and more people in it: the thesis's 30 characters, 60 eyes.
+"""A frame with more and more people in it.
 
-The main character's eyes are ultra and mirror everybody; the camera stands where most of the crowd
-is in the picture.
+Two scenes: the clips' own, where two ultra eyes mirror everybody and the camera stands where most
+of the crowd is in the picture; and the thesis's, where all characters face the camera, 30 of them
+with 60 eyes, each at the LoD that its size asks for.
 """
 
 from __future__ import annotations
@@ -18,14 +19,31 @@ from renderer.detail import Detail
 PART: Final = "crowd"
 DISTANCE: Final = "far"
 LOD: Final = "ultra"
+GROUP: Final = "group"  # told as a row's distance: the camera sees everybody
+BY_SIZE: Final = "by size"  # told as a group's LoD
 
 
 def crowd_steps(rounds: int, *, is_quick: bool) -> list[Step]:
-    """Return the one step, whose frames must be taken in turn; in a hurry of the least and most."""
+    """Return a step per scene, whose frames must be taken in turn; in a hurry of the extremes."""
     crowds = (CROWDS[0], CROWDS[-1]) if is_quick else CROWDS
-    title = ", ".join(map(str, crowds)) + " people"
-    weight = len(crowds) * (1.5 * (rounds + WARM_UP) + 25)
-    return [Step(PART, title, weight, partial(_measure, crowds=crowds))]
+    groups = CROWDS[-1:] if is_quick else CROWDS[1:]
+    return [
+        Step(PART, _title(crowds), _weight(crowds, rounds), partial(_measure, crowds=crowds)),
+        Step(
+            PART,
+            f"group of {_title(groups)}",
+            _weight(groups, rounds),
+            partial(_measure_groups, crowds=groups),
+        ),
+    ]
+
+
+def _title(crowds: tuple[int, ...]) -> str:
+    return ", ".join(map(str, crowds)) + " people"
+
+
+def _weight(crowds: tuple[int, ...], rounds: int) -> float:
+    return len(crowds) * (1.5 * (rounds + WARM_UP) + 25)
 
 
 def _measure(stand: Stand, bench: Bench, *, crowds: tuple[int, ...]) -> None:
@@ -36,3 +54,25 @@ def _measure(stand: Stand, bench: Bench, *, crowds: tuple[int, ...]) -> None:
         stand.row(PART, spec, spread_of(ms), lod=LOD, eyes=len(BOTH), crowd=spec.crowd)
         for spec, ms in zip(specs, times, strict=True)
     )
+
+
+def _measure_groups(stand: Stand, bench: Bench, *, crowds: tuple[int, ...]) -> None:
+    detail = Detail.uniform(LOD)
+    specs = [stand.spec(detail, DISTANCE, eyes=BOTH, crowd=crowd) for crowd in crowds]
+    groups = [stand.studio.group_renderer(spec) for spec in specs]
+    times = stand.time(groups)
+    for spec, group, ms in zip(specs, groups, times, strict=True):
+        eyes = group.eyes_drawn
+        largest = max(eye.iris_px for eye in eyes)
+        bench.rows.append(
+            stand.row(
+                PART,
+                spec,
+                spread_of(ms),
+                distance=GROUP,
+                iris_px=round(largest, 2),
+                lod=BY_SIZE,
+                eyes=len(eyes),
+                crowd=spec.crowd,
+            )
+        )

@@ -107,14 +107,23 @@ def draw_cubes(axes: Axes, rows: list[Cost]) -> None:
 
 
 def draw_crowd(axes: Axes, rows: list[Cost]) -> None:
-    """A frame's time by the number of people."""
-    x, y = [row.crowd or 0 for row in rows], [row.ms_median for row in rows]
-    axes.errorbar(x, y, yerr=[row.ms_mad for row in rows], color=TWO[0], marker="o", ms=4.5, lw=1.3)
-    axes.set_xticks(x)
+    """A frame's time by the number of people: around the main character, and as a group."""
+    for distance, colour, marker in zip(
+        dict.fromkeys(row.distance for row in rows), TWO, ("o", "s"), strict=False
+    ):
+        own = [row for row in rows if row.distance == distance]
+        x, y = [row.crowd or 0 for row in own], [row.ms_median for row in own]
+        error = [row.ms_mad for row in own]
+        axes.errorbar(x, y, yerr=error, color=colour, marker=marker, ms=4.5, lw=1.3)
+        told = (
+            "group, all eyes by size" if own[-1].eyes > 2 else f"{distance}, two {own[-1].lod} eyes"
+        )
+        _label(axes, x[-1], y[-1], told, colour)
+    axes.set_xticks(sorted({row.crowd or 0 for row in rows}))
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("other people in the scene", fontsize=SMALL)
-    axes.set_ylabel(f"ms per frame, {rows[0].distance}, two {rows[0].lod} eyes", fontsize=SMALL)
-    axes.margins(x=0.1)
+    axes.set_ylabel("ms per frame", fontsize=SMALL)
+    axes.margins(x=0.3)
 
 
 def _label(axes: Axes, x: float, y: float, text: str, colour: str, *, up: float = 0.0) -> None:

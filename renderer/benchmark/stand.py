@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from renderer.benchmark.clock import Spread, clock_of, interleaved, timer_of
+from renderer.benchmark.clock import Spread, Timed, clock_of, interleaved, timer_of
 from renderer.benchmark.result import About, Bench, Cost
 from renderer.camera import iris_px
 from renderer.clip import ClipSpec
@@ -68,23 +68,26 @@ class Stand:
             self._kept = self.frames(spec)
         return self._kept
 
-    def time(self, variants: Sequence[FrameRenderer]) -> list[list[float]]:
+    def time(self, variants: Sequence[Timed]) -> list[list[float]]:
         """Return milliseconds per variant and round, taken in turn."""
         return interleaved(variants, rounds=self.rounds, timer=self._timer)
 
     def row(self, part: str, spec: ClipSpec, spread: Spread, **says: Any) -> Cost:
-        """Return one row of ``bench.json``; one eye was drawn unless it ``says`` otherwise."""
+        """Return one row of ``bench.json``: of a clip of one eye, unless it ``says`` otherwise."""
+        seen: dict[str, Any] = {
+            "distance": spec.distance,
+            "iris_px": round(iris_px(spec, 0.0)[0], 2),
+            "eyes": len(ONE),
+        }
         return Cost(
             part=part,
             renderer=self.studio.gl_renderer,
             size=f"{spec.width}x{spec.height}",
-            distance=spec.distance,
-            iris_px=round(iris_px(spec, 0.0)[0], 2),
             ms_median=spread.median,
             ms_mad=spread.mad,
             n=spread.n,
             load=load(),
-            **{"eyes": len(ONE)} | says,
+            **{**seen, **says},
         )
 
     def about(self, *, is_quick: bool, seconds: float) -> About:

@@ -14,6 +14,7 @@ from renderer.clip import ClipSpec
 from renderer.context import identify
 from renderer.detail import STANDARD_LODS
 from renderer.frame import FrameRenderer
+from renderer.group import GroupRenderer
 from renderer.scene import Scene
 
 
@@ -78,6 +79,11 @@ def known() -> Bench:
         cost("crowd", lod="ultra", crowd=people, distance="far", eyes=2, ms_median=80.0 + people)
         for people in (0, 30)
     ]
+    crowd += [
+        cost("crowd", lod="by size", crowd=people, distance="group", eyes=2 * people,
+             ms_median=40.0 + people)
+        for people in (5, 30)
+    ]  # fmt: skip
     return Bench(
         about=about,
         rows=[*lods, *effects, *samples, *cubes, *crowd],
@@ -110,6 +116,9 @@ class SharedStudio:
 
     def renderer(self, spec: ClipSpec, *, eyes: tuple[int, ...]) -> FrameRenderer:
         return FrameRenderer(self.gl, spec, scene=self.scene, eyes=eyes)
+
+    def group_renderer(self, spec: ClipSpec) -> GroupRenderer:
+        return GroupRenderer(self.gl, spec, surroundings=self.scene.surroundings)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from renderer.benchmark import cubes, lods
+from renderer.benchmark import crowd, cubes, lods
 from renderer.benchmark.clock import QUERY, timer_of
 from renderer.benchmark.effects import is_none, levels_of
 from renderer.benchmark.plan import Progress, run_bench, steps_of
@@ -59,6 +59,18 @@ def test_frames_of_each_lod_are_timed(stand: Stand, monkeypatch: pytest.MonkeyPa
         assert row.iris_px == pytest.approx(350 * 64 / 1080, abs=0.01)
         assert row.ms_median > 0
         assert row.n == 2
+
+
+def test_a_group_is_timed_with_all_its_eyes(stand: Stand, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(crowd, "CROWDS", (0, 5))
+    bench = empty(stand)
+    large = Stand(stand.studio, (640, 360), rounds=1)
+    crowd.crowd_steps(1, is_quick=True)[1].measure(large, bench)
+    (row,) = bench.rows
+    assert (row.part, row.distance, row.lod, row.crowd) == ("crowd", "group", "by size", 5)
+    assert 0 < row.eyes <= 10
+    assert row.iris_px > 4.0
+    assert row.ms_median > 0
 
 
 def test_timer_queries_run_where_the_wall_clock_is_better(
