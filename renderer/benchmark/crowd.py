@@ -63,7 +63,7 @@ def _measure_groups(stand: Stand, bench: Bench, *, crowds: tuple[int, ...]) -> N
     times = stand.time(groups)
     for spec, group, ms in zip(specs, groups, times, strict=True):
         eyes = group.eyes_drawn
-        largest = max(eye.iris_px for eye in eyes)
+        largest = max((eye.iris_px for eye in eyes), default=0.0)  # small ones are painted
         bench.rows.append(
             stand.row(
                 PART,

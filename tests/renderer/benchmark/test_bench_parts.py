@@ -64,7 +64,7 @@ def test_frames_of_each_lod_are_timed(stand: Stand, monkeypatch: pytest.MonkeyPa
 def test_a_group_is_timed_with_all_its_eyes(stand: Stand, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(crowd, "CROWDS", (0, 5))
     bench = empty(stand)
-    large = Stand(stand.studio, (640, 360), rounds=1)
+    large = Stand(stand.studio, (1280, 720), rounds=1)
     crowd.crowd_steps(1, is_quick=True)[1].measure(large, bench)
     (row,) = bench.rows
     assert (row.part, row.distance, row.lod, row.crowd) == ("crowd", "group", "by size", 5)
