@@ -34,7 +34,7 @@ LASH_COVER: Final = 0.324  # of lashes seen square on: 2 x 0.9 x 0.03 mm x 6 a m
 SUN_COVER: Final = 0.29  # of the three rows of hairs, one behind the other, that the sun meets
 LASH_ENDS_MM: Final = (10.7, 12.2)  # off the middle
 MIRRORED: Final = 0.4  # of the sky that the point sees
-SCATTER_WRAP: Final = (0.30, 0.20, 0.16)  # thicker tissue than ``sclera.glsl`` has
+SCATTER_WRAP: Final = (0.30, 0.23, 0.20)  # thicker tissue than ``sclera.glsl`` has
 SHADE_SEEP: Final = (0.72, 0.98, 1.05)
 
 
@@ -50,8 +50,11 @@ def light_corner(
 ) -> SkinLight:
     """Return the light on one eye's corners; ``sun`` (n,) is how much of it the head leaves."""
     side = np.array([1.0 if eye else -1.0, 1.0, 1.0])  # patch space has the temple at +x
-    rims = LidRims(*rim_curves(pose, samples=513))
     places, lies = _settled(to_patch(points_mm, eye))
+    # There the globe's own slope counts: the sheet's edge, which dips below it, is not to be seen.
+    normals = normals + lies * (places * side / GLOBE_RADIUS_MM - normals)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    rims = LidRims(*rim_curves(pose, samples=513))
     rays = _hemispheres(normals)
     towards = rays * side
     every = np.broadcast_to(places[:, None], rays.shape).reshape(-1, 3)

@@ -28,7 +28,7 @@ THIN: Final = (0.91, 0.875, 0.90)  # veins and muscle through the upper lid: blu
 PLATE: Final = (0.86, 0.84, 0.86)  # between lashes and crease the skin is the body's thinnest
 CREASE: Final = (0.86, 0.855, 0.86)  # pigment where skin folds all day
 WET: Final = (0.52, 0.230, 0.195)
-SCLERA: Final = (0.67, 0.505, 0.44)  # seen through the conjunctiva in the corners
+SCLERA: Final = (0.69, 0.535, 0.465)  # seen through the conjunctiva in the corners
 CARUNCLE: Final = (0.62, 0.255, 0.215)
 # Tints: centre x, y in mm, radii in mm, factor of the albedo. Both sides alike unless x is 0.
 ZONES: Final = (
