@@ -23,6 +23,7 @@ IRIS_COLOURS: Final = ("blue", "grey", "green", "hazel", "amber", "brown", "dark
 ENVIRONMENTS: Final = ("park", "image")
 CROWDS: Final = (0, 5, 10, 30)
 CAUSTIC_PATTERNS: Final = ("computed", "painted")
+CUBE_SIZES: Final = ("table", "auto")
 # Where files lie: the contents' hash beside each path decides what the frames are.
 PATHS: Final = ("environment_file", "iris_file")
 # Fields that names do not tell while they have their defaults: clips without them keep theirs.
@@ -33,6 +34,7 @@ _LATER: Final = (
     "approach_start_px",
     "approach_end_px",
     "approach_azimuth_deg",
+    "cube_size",
 )
 _CHOICES: Final[Mapping[str, Collection[object]]] = {
     "distance": DISTANCES,
@@ -43,6 +45,7 @@ _CHOICES: Final[Mapping[str, Collection[object]]] = {
     "environment": ENVIRONMENTS,
     "crowd": CROWDS,
     "caustic_pattern": CAUSTIC_PATTERNS,
+    "cube_size": CUBE_SIZES,
     "left_switching": SWITCHINGS,
     "right_switching": SWITCHINGS,
 }
@@ -95,6 +98,9 @@ class ClipSpec:
     ``left_switching`` and ``right_switching`` say whether an eye keeps its LoD ("fixed") or takes
     it from ``lod_policy`` by its size in pixels, "blended" or in an "instant". Its own LoD is then
     the policy's finest.
+
+    ``cube_size`` "table" mirrors cubes of each LoD's size; "auto" of no more texels than the
+    cornea shows at the clip's nearest, which is quicker.
     """
 
     left: Detail
@@ -133,6 +139,7 @@ class ClipSpec:
     approach_start_px: float = 12.0
     approach_end_px: float = 160.0
     approach_azimuth_deg: float = 0.0
+    cube_size: str = "table"
 
     def __post_init__(self) -> None:
         faults = clip_faults(self, _CHOICES, _RANGES)

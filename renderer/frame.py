@@ -15,6 +15,7 @@ import moderngl
 from renderer.camera import IRIS_PX, CameraUniforms, View, radius_of_px, views
 from renderer.clip import ClipSpec
 from renderer.crowd.cube import CrowdCube
+from renderer.eye.cube_size import cube_px
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import EyeModel
 from renderer.lod.path import Places, details_of, places_of_clip, places_of_view, shares_of
@@ -184,7 +185,7 @@ class FrameRenderer:
 
     def _make_crowd_cube(self) -> CrowdCube | None:
         sizes = [
-            int(detail.setting("reflection", "cube_px"))
+            cube_px(detail, self.spec)
             for detail in details_of(self.spec)
             if detail.setting("reflection", "mode") == "dynamic"
         ]

@@ -17,6 +17,7 @@ import numpy as np
 from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.eye.cube_size import cube_px
 from renderer.eye.kept import Kept
 from renderer.eye.lids import LidRims
 from renderer.eye.model import EyeModel, build_model
@@ -189,7 +190,7 @@ class Eyes:
                 spec=self._spec,
                 rims=self._rims[eye],
                 light=self._light,
-                cubes=_cubes(detail, self._static_cube, self._crowd_cube),
+                cubes=_cubes(detail, self._spec, self._static_cube, self._crowd_cube),
                 has_face=self._has_face,
                 kept=self._kept,
             )
@@ -210,11 +211,12 @@ def _refracting(shares: Shares) -> tuple[str, float] | None:
 
 def _cubes(
     detail: Detail,
+    spec: ClipSpec,
     static_cube: Callable[[int], moderngl.TextureCube],
     crowd_cube: moderngl.TextureCube | None,
 ) -> dict[str, moderngl.TextureCube]:
     """Return the cubes that a LoD mirrors; raises ValueError where ultra finds no crowd."""
-    size = int(detail.setting("reflection", "cube_px"))
+    size = cube_px(detail, spec)
     if size == 0:
         return {}
     cubes = {"u_static_cube": static_cube(size)}

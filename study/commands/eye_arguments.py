@@ -78,7 +78,7 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_eyes(parser: argparse.ArgumentParser) -> None:
-    from renderer.clip import CAUSTIC_PATTERNS
+    from renderer.clip import CAUSTIC_PATTERNS, CUBE_SIZES
 
     parser.add_argument(
         "--gaze",
@@ -110,6 +110,12 @@ def _add_eyes(parser: argparse.ArgumentParser) -> None:
         choices=CAUSTIC_PATTERNS,
         default="computed",
         help="painted: the thesis's artist's map (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--cube-size",
+        choices=CUBE_SIZES,
+        default="table",
+        help="auto: mirror cubes no finer than the cornea shows (default: %(default)s)",
     )
     parser.add_argument(
         "--iris",

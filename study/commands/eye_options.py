@@ -44,6 +44,7 @@ def spec_of(options: argparse.Namespace) -> ClipSpec:
         blink=options.blink,
         subsurface_samples=options.subsurface_samples,
         caustic_pattern=options.caustic_pattern,
+        cube_size=options.cube_size,
     )
     given = {name: value for name, value in optional.items() if value is not None}
     return replace(spec, **options.iris, **given)

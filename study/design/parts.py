@@ -142,6 +142,7 @@ class Eye(Part):
     blink: Annotated[Real, clip_value("blink")] = 0.0
     subsurface_samples: Annotated[Whole, clip_value("subsurface_samples")] = 0
     caustic_pattern: Annotated[str, clip_value("caustic_pattern")] = "computed"
+    cube_size: Annotated[str, clip_value("cube_size")] = "table"
 
     @model_validator(mode="after")
     def _accepted_by_clip(self) -> Self:
