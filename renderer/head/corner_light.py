@@ -20,7 +20,8 @@ from renderer.head.lid_rims import rim_curves
 from renderer.head.skin_light import SkinLight, scatter, sky_radiance
 from renderer.light import Sky
 
-LID_FRONT_MM: Final = (1.4, 0.4)  # the lids' middle surface over globe, and over what stands out
+# The lids' middle surface over the globe (``lids.glsl``), and over what stands out.
+LID_FRONT_MM: Final = (13.4 - GLOBE_RADIUS_MM, 0.4)
 RESTS_MM: Final = 1.0  # off the globe: what is nearer counts as lying on it
 OUT_MM: Final = (12.3, 15.0)  # from the globe's centre: what stands out between the lids
 SOFTNESS_MM: Final = (0.8, 0.35)  # of the lids' shade from the sky, and from the sun ...

@@ -14,8 +14,8 @@ from renderer.head.lid_rims import smooth_step
 
 LAP_COLUMN: Final = -5  # the fold's line: a little below the corner's own column
 LAP_MM: Final = 4.5  # how far it runs on towards the temple
-LAP_RISE_MM: Final = 0.3  # of the upper lid's skin over the line
-LAP_DEPTH_MM: Final = 0.35  # of the groove under it
+LAP_RISE_MM: Final = 0.25  # of the upper lid's skin over the line
+LAP_DEPTH_MM: Final = 0.22  # of the groove under it
 LAP_OVER_MM: Final = 0.3  # how far the upper lid's skin comes down over the lower's
 
 

@@ -84,6 +84,7 @@ def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
         ring = np.exp(-(((x + 2.0) / 15.0) ** 2) - ((y + 10.5) / 4.5) ** 2)
         trough = np.exp(-(((x + 11.0) / 7.0) ** 2) - ((y + 9.5 + 0.35 * x) / 3.5) ** 2)
         inner = np.exp(-(((x + 16.0) / 5.0) ** 2) - ((y + 1.5) / 6.0) ** 2)
+        outer = np.exp(-(((x - 15.5) / 3.5) ** 2) - ((y + 0.3) / 0.7) ** 2)
         fat = np.exp(-(((x - 2.0) / 16.0) ** 2) - ((y + 18.0) / 4.0) ** 2)
         for weight, factor in (
             (lid, (1.00, 0.95, 0.95)),
@@ -91,6 +92,7 @@ def _tint_around_eyes(albedo: Floats, part: SkinPart) -> None:
             (ring, (0.95, 0.91, 0.97)),
             (trough, (0.90, 0.88, 0.97)),
             (inner, (0.98, 0.91, 0.92)),
+            (outer, (0.99, 0.965, 1.06)),
             (fat, (1.03, 1.04, 1.02)),
         ):
             albedo *= 1 + weight[:, None] * (np.array(factor) - 1)

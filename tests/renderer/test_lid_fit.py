@@ -144,17 +144,35 @@ def test_from_the_temple_no_valley_shows_the_globes_outline(pose: LidPose) -> No
 
 def test_the_plica_is_a_fold_between_globe_and_caruncle() -> None:
     rows, columns = CARUNCLE_GRID
-    x, _, z = caruncle().points_mm.reshape(rows, columns, 3)[:, columns // 2].T
-    foot, crest, behind = np.interp((-11.1, -11.6, -12.8), x, z)
+    sheet = caruncle()
+    x, _, z = sheet.points_mm.reshape(rows, columns, 3)[:, columns // 2].T
+    foot, crest, behind = np.interp((-11.1, -11.45, -12.3), x, z)
     assert crest > foot + 0.1
-    assert crest > behind + 0.02
+    assert crest > behind + 0.2  # the lake of tears
+    sclera = sheet.sclera.reshape(rows, columns)[:, columns // 2]
+    white, fold, lake = np.interp((-10.0, -11.45, -12.3), x, sclera)
+    assert white > 0.95
+    assert lake + 0.1 < fold < 0.7
+
+
+def test_the_caruncle_stands_out_of_the_lake_and_alone_is_rough() -> None:
+    sheet = caruncle()
+    is_caruncle = sheet.pink > 0.9
+    x, y, z = sheet.points_mm.T
+    assert 2.5 < np.ptp(x[is_caruncle]) < 4.5
+    assert np.ptp(y[is_caruncle]) > 2.2
+    row = np.abs(y + 1.3) < 0.1
+    lake = z[row & (x > -12.6) & (x < -11.9)].min()
+    assert z[is_caruncle & row].max() > lake + 1.0
+    assert sheet.grain[sheet.pink < 0.01].max() < 0.02
+    assert sheet.grain[is_caruncle].mean() > 0.5
 
 
 def test_the_upper_lid_laps_over_the_lower_at_the_outer_corner() -> None:
     patch = face_mesh().lids[1]
     places = patch.points_mm[:, patch.rim_row + 6]
     upper, lower = places[1], places[LAP_COLUMN - 2]
-    assert upper[2] > lower[2] + 0.25
+    assert upper[2] > lower[2] + 0.15
     assert upper[1] > lower[1]
 
 
