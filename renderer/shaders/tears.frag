@@ -63,7 +63,8 @@ vec3 sky_mirrored(vec3 n, vec3 v, float fresnel) {
 void main() {
     vec3 v = normalize(u_camera_mm - v_world);
     vec3 n = normalize(v_normal);
-    float fresnel = schlick(clamp(dot(n, v), 0.05, 1.0), TEAR_F0);
+    // Where the globe turns away the strip would mirror lids and nose, which the harmonics do not know.
+    float fresnel = schlick(clamp(dot(n, v), 0.25, 1.0), TEAR_F0);
     float edge = 1.0 - smoothstep(0.0, 0.35, v_water.x);
     float taken = fresnel + EDGE_SHADE * edge * (1.0 - edge) * 4.0;
     // A line narrower than a pixel fills but a part of it.
