@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats
-from renderer.head.lid_fit import Socket
+from renderer.head.lid_socket import Socket
 from renderer.head.strand_group import Strands, joined
 
 COUNT: Final = 540

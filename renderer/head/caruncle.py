@@ -6,19 +6,18 @@ left the globe, and go along with lids and gaze.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from renderer.body.makehuman import Floats, Indices
+from renderer.body.makehuman import Floats
+from renderer.head.corner_sheet import CRESCENT_MM, Corner, ease, sheet_quads, span_sheet
 from renderer.head.lid_pose import STRAIGHT, LidPose
-from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim_curves, soft_max
+from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, soft_max
 from renderer.head.lid_shell import on_globe
 
 CARUNCLE_END_MM: Final = -7.5  # towards the pupil: under the globe's surface from here on
 COVER_MM: Final = (-8.1, -9.4)  # the conjunctiva fades in over the sclera between these
-CRESCENT_MM: Final = 0.25  # how far its lines bend around the pupil towards the lids
 BRIDGE_MM: Final = 5.0  # how softly it leaves the globe: a valley would show the globe's outline
 PLICA_MM: Final = -11.2  # free edge of the fold, a crescent that embraces the cornea
 PLICA_EDGE_MM: Final = 0.35  # from its foot on the globe to its height ...
@@ -31,47 +30,30 @@ GRANULE_MM: Final = 0.06  # height of its granules, which lie on lobes twice as 
 LATERAL_COVER_MM: Final = (10.5, 11.4)  # off the gaze axis: where the outer sheet fades in
 MEMBRANE_START_MM: Final = 8.6
 DRAWN: Final = (0.28, 0.12)  # share of the cornea's way to nose and temple that drags the fold
-TUCKED_MM: Final = 0.3  # of the sheets' edges, below the lids
 FULL_OPENING_MM: Final = 3.0  # of the lids, at which the caruncle stands out fully
 CARUNCLE_GRID: Final = (112, 44)  # points from canthus inwards, and from lid to lid
 MEMBRANE_GRID: Final = (22, 16)
 
 
-@dataclass(frozen=True)
-class Corner:
-    """A sheet of conjunctiva: points (n, 3) in mm, quads (m, 4), and per point 0 to 1
-
-    ``pink`` how much it is caruncle, ``grain`` how rough it is, ``sclera`` how much sclera shines
-    through, ``cover`` how much of the globe it hides.
-    """
-
-    points_mm: Floats
-    quads: Indices
-    pink: Floats
-    grain: Floats
-    sclera: Floats
-    cover: Floats
-
-
 def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     """Return the inner corner: conjunctiva off the sclera, the plica's fold, the caruncle."""
     drawn = _drawn_mm(pose)
-    sheet = _sheet(MEDIAL_MM[0], CARUNCLE_END_MM + drawn, pose, grid=CARUNCLE_GRID)
+    sheet = span_sheet(MEDIAL_MM[0], CARUNCLE_END_MM + drawn, pose, grid=CARUNCLE_GRID)
     b = sheet.upwards
     x, y, z = (sheet.points_mm[..., axis] for axis in range(3))
     between = np.sin(np.pi * b)
-    room = _ease(sheet.opening_mm / FULL_OPENING_MM)
+    room = ease(sheet.opening_mm / FULL_OPENING_MM)
     crescent = (
         x - drawn + CRESCENT_MM * (2 * b - 1) ** 2
     )  # lines of equal depth bend around the pupil
     foot = _caruncle_foot(x - 0.3 * drawn, y, b)
     dome = room * _dome(foot)
-    lake = room * np.exp(-(((foot - 1.12) / 0.2) ** 2)) * between * _ease((x - BUMP_MM[0]) / 1.2)
+    lake = room * np.exp(-(((foot - 1.12) / 0.2) ** 2)) * between * ease((x - BUMP_MM[0]) / 1.2)
     fold, way = _plica(x - drawn, b)
-    sag = 0.75 * between * _ease((x - MEDIAL_MM[0]) / 1.5)
+    sag = 0.75 * between * ease((x - MEDIAL_MM[0]) / 1.5)
     globe = on_globe(sheet.points_mm[..., :2], pose)
-    off = _ease((-7.9 - crescent) / 1.4)
-    under = _ease((crescent + 8.3) / 0.6)
+    off = ease((-7.9 - crescent) / 1.4)
+    under = ease((crescent + 8.3) / 0.6)
     over = np.minimum(0.09, 0.05 + 0.2 * sheet.opening_mm)
     bridge = BRIDGE_MM * room * between * off
     base = soft_max(globe + over, z - sag, 0.05 + bridge) - 0.6 * under
@@ -79,14 +61,14 @@ def caruncle(pose: LidPose = STRAIGHT) -> Corner:
     bumps = BUMP_RISE_MM * dome + GRANULE_MM * (2 * lobes + granules) * np.sqrt(dome)
     bumps += PLICA_RISE_MM * room * fold * between - LAKE_MM * lake
     sheet.points_mm[..., 2] = base + bumps
-    cover = _ease((COVER_MM[0] - crescent) / (COVER_MM[0] - COVER_MM[1]))
+    cover = ease((COVER_MM[0] - crescent) / (COVER_MM[0] - COVER_MM[1]))
     cover = np.maximum(cover, _beside_globe(sheet.points_mm))
     # White before the fold, pinker on it, red in the lake behind.
-    white = 1.0 - 0.5 * _ease(way / 0.5 + 0.6) - 0.4 * _ease((way - 0.8) / 0.7)
-    pink = _ease(2.5 * dome)
+    white = 1.0 - 0.5 * ease(way / 0.5 + 0.6) - 0.4 * ease((way - 0.8) / 0.7)
+    pink = ease(2.5 * dome)
     return Corner(
         sheet.points_mm.reshape(-1, 3),
-        _quads(CARUNCLE_GRID),
+        sheet_quads(CARUNCLE_GRID),
         pink.ravel(),
         (room * pink).ravel(),
         np.clip(white * (1 - pink) + 0.15 * np.clip(granules, 0, 1) * pink, 0, 1).ravel(),
@@ -114,8 +96,8 @@ def _plica(x: Floats, b: Floats) -> tuple[Floats, Floats]:
     The edge looks towards the cornea; behind it the fold sinks to the lake of tears.
     """
     way = PLICA_MM + 4.0 * (b - 0.45) ** 2 + 0.07 * np.sin(7.0 * b + 1.0) - x
-    rise = _ease(way / PLICA_EDGE_MM + 0.5)
-    fall = _ease((way - 0.5 * PLICA_EDGE_MM) / PLICA_WIDTH_MM)
+    rise = ease(way / PLICA_EDGE_MM + 0.5)
+    fall = ease((way - 0.5 * PLICA_EDGE_MM) / PLICA_WIDTH_MM)
     return rise * (1 - fall), way
 
 
@@ -127,7 +109,7 @@ def _drawn_mm(pose: LidPose) -> float:
 
 def _beside_globe(points: Floats) -> Floats:
     """Return 1 where no globe would be seen through the sheet, 0 well inside its outline."""
-    return _ease((np.hypot(points[..., 0], points[..., 1]) - 10.95) / 0.5)
+    return ease((np.hypot(points[..., 0], points[..., 1]) - 10.95) / 0.5)
 
 
 def _lobes(x: Floats, y: Floats) -> tuple[Floats, Floats]:
@@ -140,65 +122,21 @@ def _lobes(x: Floats, y: Floats) -> tuple[Floats, Floats]:
 
 def outer_membrane(pose: LidPose = STRAIGHT) -> Corner:
     """Return the conjunctiva in the outer corner."""
-    sheet = _sheet(LATERAL_MM[0], MEMBRANE_START_MM, pose, grid=MEMBRANE_GRID)
+    sheet = span_sheet(LATERAL_MM[0], MEMBRANE_START_MM, pose, grid=MEMBRANE_GRID)
     a, b = sheet.inwards, sheet.upwards
     globe = on_globe(sheet.points_mm[..., :2], pose)
-    under = _ease((a - 0.85) / 0.15)
-    between = np.sin(np.pi * b) * _ease(sheet.opening_mm)
+    under = ease((a - 0.85) / 0.15)
+    between = np.sin(np.pi * b) * ease(sheet.opening_mm)
     start, end = LATERAL_COVER_MM
     hollow = sheet.points_mm[..., 2] - 0.35 * between
     sheet.points_mm[..., 2] = soft_max(globe + 0.05, hollow, 0.05 + between) - 0.5 * under
     return Corner(
         sheet.points_mm.reshape(-1, 3),
-        _quads(MEMBRANE_GRID)[:, ::-1],
+        sheet_quads(MEMBRANE_GRID)[:, ::-1],
         np.zeros(a.size),
         np.zeros(a.size),
-        _ease(a / 0.45).ravel(),
-        _ease(
+        ease(a / 0.45).ravel(),
+        ease(
             (np.hypot(*np.moveaxis(sheet.points_mm[..., :2], -1, 0)) - start) / (end - start)
         ).ravel(),
     )
-
-
-@dataclass(frozen=True)
-class _Sheet:
-    """A grid between the rims: points in mm, places from canthus inwards and
-
-    from lower to upper rim, 0 to 1, and how far apart the rims are there.
-    """
-
-    points_mm: Floats
-    inwards: Floats
-    upwards: Floats
-    opening_mm: Floats
-
-
-def _sheet(corner_x: float, inner_x: float, pose: LidPose, *, grid: tuple[int, int]) -> _Sheet:
-    """Span a sheet between the rims from a canthus inwards."""
-    rows, columns = grid
-    a, b = np.meshgrid(np.linspace(0, 1, rows), np.linspace(-0.03, 1.03, columns), indexing="ij")
-    # The inner edge is a crescent around the pupil.
-    bend = 1.2 if corner_x > 0 else CRESCENT_MM
-    crescent = inner_x + np.sign(corner_x) * bend * (2 * np.clip(b, 0, 1) - 1) ** 2
-    x = corner_x + (crescent - corner_x) * a
-    upper, lower = (
-        [np.interp(x, curve[:, 0], curve[:, axis]) for axis in (1, 2)]
-        for curve in rim_curves(pose, samples=513)
-    )
-    y = lower[0] * (1 - b) + upper[0] * b
-    y += TUCKED_MM * np.clip((np.abs(b - 0.5) - 0.5) / 0.03, 0, 1) * np.sign(b - 0.5)
-    z = lower[1] * (1 - b) + upper[1] * b
-    opening = np.maximum(upper[0] - lower[0], 0.0)
-    return _Sheet(np.stack([x, y, z], axis=-1), a, np.clip(b, 0, 1), opening)
-
-
-def _ease(x: Floats) -> Floats:
-    x = np.clip(x, 0.0, 1.0)
-    return np.asarray(x * x * (3 - 2 * x))
-
-
-def _quads(grid: tuple[int, int]) -> Indices:
-    rows, columns = grid
-    i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")
-    corners = [(i + di) * columns + j + dj for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1))]
-    return np.stack(corners, axis=-1).reshape(-1, 4)

@@ -20,7 +20,9 @@ from renderer.camera import eye_centre_mm
 from renderer.head import lid_fit
 from renderer.head.caruncle import caruncle, outer_membrane
 from renderer.head.character import SET_BACK_MM, Figure, figure
+from renderer.head.lid_outline import OUTLINE_MM
 from renderer.head.lid_pose import STRAIGHT, LidPose
+from renderer.head.lid_socket import Socket
 
 FINE_BOX_MM: Final = ((-86.0, -52.0, -62.0), (86.0, 50.0, 60.0))  # what close views can show
 LOWEST_MM: Final = -215.0  # below it the collar hides the neck
@@ -62,7 +64,7 @@ class FaceMesh:
     patches: tuple[SkinPart, SkinPart]
     corners: tuple[SkinPart, SkinPart]
     lids: tuple[lid_fit.LidPatch, lid_fit.LidPatch]
-    sockets: tuple[lid_fit.Socket, lid_fit.Socket]
+    sockets: tuple[Socket, Socket]
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,7 @@ class _Face:
     fine: SkinPart
     rest: SkinPart
     coarse: SkinPart
-    sockets: tuple[lid_fit.Socket, lid_fit.Socket]
+    sockets: tuple[Socket, Socket]
 
 
 @functools.lru_cache(maxsize=8)
@@ -205,20 +207,20 @@ def _mask(mesh: Mesh, name: str) -> Floats:
     return values
 
 
-def _socket(level: Floats, quads: Indices, eye: int) -> lid_fit.Socket:
+def _socket(level: Floats, quads: Indices, eye: int) -> Socket:
     points = level[:, :3]
     normals = vertex_normals(points, triangles_of(quads))
     local = to_patch(points, eye)
     x, y, z = local.T
     outside = np.linalg.norm(local + [0.0, 0.0, SET_BACK_MM], axis=1) > SOCKET_MM
     near = (np.abs(y) < 34.0) & (x > -31.0) & (x < 36.0) & (z > -25.0)
-    return lid_fit.Socket(local[outside & near & (normals[:, 2] > 0.05)])
+    return Socket(local[outside & near & (normals[:, 2] > 0.05)])
 
 
 def _in_eye(level: Floats, quads: Indices) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     """Return which quads the patches replace: inside the outline, or in the socket behind."""
     inside = np.zeros(len(quads), dtype=bool)
-    temple, nose, up, down = lid_fit.OUTLINE_MM
+    temple, nose, up, down = OUTLINE_MM
     for eye in (0, 1):
         x, y, z = to_patch(level[quads][:, :, :3].mean(axis=1), eye).T
         ratio = (x / np.where(x > 0, temple, nose)) ** 2 + (y / np.where(y > 0, up, down)) ** 2

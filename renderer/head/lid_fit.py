@@ -12,20 +12,20 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import RBFInterpolator
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.head.lid_lap import lap_over
+from renderer.head.lid_outline import blur_ring, canthus_nearness, end_distance, outward_from
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, rim, rim_shares, smooth_step, soft_max
 from renderer.head.lid_skin import Columns, lower_skin, upper_skin
+from renderer.head.lid_socket import DrawnFace, Socket
 
 TUCK_MM: Final = 1.6  # from the inner edge back to the patch's innermost ring
 OFF_GLOBE_TUCK_MM: Final = 2.0  # more of it at the canthi, where nothing is close behind
 MARGIN_MM: Final = 1.75  # lid thickness at the rim
 MARGIN_TURN: Final = (0.5, 0.8)  # of the margin against the globe's normal, lower and upper lid
 MEETING_MM: Final = 3.5  # lids that are nearer to each other turn their margins face to face
-OUTLINE_MM: Final = (25.5, 22.5, 17.5, 19.5)  # patch ends: temple, nose, up, down of (0, 0)
 ENDING: Final = (0.0, 0.9, 1.8, 2.7)  # of the last rings, in mm beyond the outline
 SETTLED: Final = (0.25, 0.6, 0.9, 1.0, 1.0, 1.0, 1.0)  # how far the last rings obey the face
 LIFTED: Final = (0.35, 0.7, 1.0, 1.0, 1.0)  # how far the rings inside it keep off a lower place
@@ -33,8 +33,6 @@ LIFT_MM: Final = 0.6  # how softly
 AROUND: Final = 176
 ALONG: Final = 48
 EDGE_ROW: Final = 3  # of the lids' inner edge
-# Where the face gives way for the canthi: place, height of the skin there, reach, all in mm.
-CANTHUS_PITS: Final = (((-17.4, -2.2), 8.0, 7.5), ((13.4, 0.5), 5.6, 7.0))
 
 
 @dataclass(frozen=True)
@@ -52,30 +50,6 @@ class LidPatch:
     across_mm: Floats
     rim_row: int
     pose: LidPose = STRAIGHT
-
-
-class Socket:
-    """The face's surface z(x, y) around one eye, lids taken away and the gap bridged smoothly."""
-
-    def __init__(self, points_mm: Floats) -> None:
-        """Take points (n, 3) of the face's skin in patch space; those on its lids are dropped."""
-        x, y, _ = points_mm.T
-        # Below, the lids reach down to the cheek: the hollow around MakeHuman's globe goes too.
-        up, down = (y - 1.0) / 10.0, (y + 0.5) / 14.5
-        on_lids = ((x - 0.5) / 21.0) ** 2 + np.where(y > 0, up, down) ** 2 < 1.0
-        kept = _thinned(points_mm[~on_lids], spacing_mm=1.7)
-        self._surface = RBFInterpolator(kept[:, :2], kept[:, 2], smoothing=0.02)
-
-    def height(self, xy: Floats) -> Floats:
-        """Return z (...,) at points (..., 2)."""
-        return np.asarray(self._surface(xy.reshape(-1, 2))).reshape(xy.shape[:-1])
-
-
-def _thinned(points: Floats, *, spacing_mm: float) -> Floats:
-    """Keep one point per square: the interpolator's cost grows with the cube of their number."""
-    cells = np.floor(points[:, :2] / spacing_mm).astype(int)
-    _, first = np.unique(cells, axis=0, return_index=True)
-    return np.asarray(points[np.sort(first)])
 
 
 def fit_lids(socket: Socket, pose: LidPose = STRAIGHT) -> LidPatch:
@@ -98,7 +72,7 @@ def inner_edge(pose: LidPose) -> Floats:
     lower = rim(_column_shares(is_upper=False), pose, is_upper=False)
     ring = np.concatenate([upper, lower])
     near = np.exp(-(((ring[:, :1] - LATERAL_MM[0]) / 0.7) ** 2))  # no edge in the outer corner
-    return np.asarray(ring + near * (_blur_ring(ring, samples=1.5) - ring))
+    return np.asarray(ring + near * (blur_ring(ring, samples=1.5) - ring))
 
 
 def upper_share() -> Floats:
@@ -129,8 +103,8 @@ def _control_net(socket: Socket, pose: LidPose) -> tuple[Floats, int]:
     straight = inner_edge(STRAIGHT)
     inner = inner_edge(pose)
     is_upper = upper_share()
-    outward = _outward(straight[:, :2])
-    canthus = _canthus_nearness(straight[:, :2])
+    outward = outward_from(straight[:, :2])
+    canthus = canthus_nearness(straight[:, :2])
     rows = _margin_rows(inner, outward, canthus=canthus)
     rim_control = len(rows) - 1
     columns = Columns(
@@ -138,9 +112,9 @@ def _control_net(socket: Socket, pose: LidPose) -> tuple[Floats, int]:
         outward=outward,
         canthus=canthus,
         lowered_mm=straight[:, 1] - inner[:, 1],
-        end_mm=_end_distance(rows[-1], outward),
+        end_mm=end_distance(rows[-1], outward),
         pose=pose,
-        face=_Face(socket).height,
+        face=DrawnFace(socket).height,
     )
     upper, lower = upper_skin(columns), lower_skin(columns)
     rows += [
@@ -151,7 +125,7 @@ def _control_net(socket: Socket, pose: LidPose) -> tuple[Floats, int]:
     net = np.stack(rows, axis=1)
     for row in range(rim_control + 1, net.shape[1]):
         # Rings lose the rim's corners on their way out.
-        net[:, row] = _blur_ring(net[:, row], samples=min(1.0 + 0.6 * (row - rim_control), 8.0))
+        net[:, row] = blur_ring(net[:, row], samples=min(1.0 + 0.6 * (row - rim_control), 8.0))
     # Lids lie on the face and never dip below it: the dip would be a ring of shade around the eye.
     for row, share in enumerate(LIFTED, start=net.shape[1] - len(ENDING) - len(LIFTED)):
         face = socket.height(net[:, row, :2])
@@ -190,7 +164,7 @@ def _margin_direction(inner: Floats, radial: Floats, *, outward: Floats, canthus
     turned = radial * np.column_stack([0.65 * one, rise, one])
     corner = np.column_stack([outward * (0.35 * apart)[:, None], 0.85 * one])
     margin = corner * canthus[:, None] + turned * (1 - canthus[:, None])
-    margin = _blur_ring(margin, samples=2.0)
+    margin = blur_ring(margin, samples=2.0)
     return np.asarray(margin / np.linalg.norm(margin, axis=1, keepdims=True))
 
 
@@ -201,68 +175,6 @@ def _opening(ring: Floats) -> Floats:
     x = ring[:, 0]
     height = np.interp(x, *upper[:, :2].T) - np.interp(x, *lower[:, :2].T)
     return np.asarray(np.maximum(height, 0.0))
-
-
-class _Face:
-    """The socket's surface, drawn back to where the lids meet at the canthi."""
-
-    def __init__(self, socket: Socket) -> None:
-        self._socket = socket
-        self._pits = []
-        for (x, y), z, reach in CANTHUS_PITS:
-            surplus = float(socket.height(np.array([x, y]))) - z
-            self._pits.append((x, y, max(surplus, 0.0), reach))
-
-    def height(self, xy: Floats) -> Floats:
-        """Return z (...,) at points (..., 2)."""
-        z = self._socket.height(xy)
-        for x, y, depth, reach in self._pits:
-            r2 = ((xy[..., 0] - x) ** 2 + (xy[..., 1] - y) ** 2) / reach**2
-            z = z - depth * np.clip(1 - r2, 0, 1) ** 2
-        return z
-
-
-def _blur_ring(values: Floats, *, samples: float) -> Floats:
-    """Smooth (around, k) along the ring by a Gaussian of ``samples`` standard deviation."""
-    frequency = np.fft.rfftfreq(len(values))[:, None]
-    gain = np.exp(-2 * (np.pi * frequency * samples) ** 2)
-    return np.asarray(np.fft.irfft(np.fft.rfft(values, axis=0) * gain, n=len(values), axis=0))
-
-
-def _outward(xy: Floats) -> Floats:
-    """Return the frontal directions (n, 2) in which the rings grow from the fissure."""
-    direction = _blur_ring(_outline(xy) - xy, samples=5.0)
-    return np.asarray(direction / np.linalg.norm(direction, axis=1, keepdims=True))
-
-
-def _outline(xy: Floats) -> Floats:
-    """Return where each ring position ends: an egg around the eye."""
-    temple, nose, up, down = OUTLINE_MM
-    centre = np.array([-1.5, -0.4])
-    direction = (xy - centre) / np.array([14.5, 5.5])
-    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    x = np.where(direction[:, 0] > 0, temple, nose) * direction[:, 0]
-    y = np.where(direction[:, 1] > 0, up, down) * direction[:, 1]
-    return np.column_stack([x, y])
-
-
-def _canthus_nearness(xy: Floats) -> Floats:
-    """Return 1 at the canthi falling to 0 some 5 mm from them."""
-    nearest = np.minimum(
-        np.linalg.norm(xy - np.array(LATERAL_MM), axis=1) / 4.0,
-        np.linalg.norm(xy - np.array(MEDIAL_MM), axis=1) / 7.5,
-    )
-    return 1.0 - smooth_step(nearest)
-
-
-def _end_distance(edge: Floats, outward: Floats) -> Floats:
-    """Return how far in mm straight lines from the rim run to the outline."""
-    reach = np.linspace(1.0, 36.0, 1401)
-    line = edge[:, None, :2] + outward[:, None, :] * reach[None, :, None]
-    temple, nose, up, down = OUTLINE_MM
-    x = line[..., 0] / np.where(line[..., 0] > 0, temple, nose)
-    y = line[..., 1] / np.where(line[..., 1] > 0, up, down)
-    return np.asarray(reach[np.argmax(x * x + y * y >= 1.0, axis=1)])
 
 
 def _spline_basis(controls: int, rows: int) -> tuple[Floats, Floats]:
