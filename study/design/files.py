@@ -89,7 +89,12 @@ def contents_sha256(path: Path) -> str:
 
 
 # What definitions of an earlier version did not hold, with what it is when it is left out.
-_LATER: Final[Mapping[str, Any]] = {"lod_policy": None, "motion": "orbit", "switching": None}
+_LATER: Final[Mapping[str, Any]] = {
+    "lod_policy": None,
+    "motion": "orbit",
+    "switching": None,
+    "cube_size": "table",
+}
 
 
 def without_later_keys(data: Mapping[str, Any]) -> dict[str, Any]:

@@ -159,3 +159,18 @@ def test_a_file_that_is_no_text_says_so(tmp_path: Path) -> None:
     file.write_bytes(b"\xff\xfe")
     with pytest.raises(DefinitionError, match=r"^bad\.toml: not UTF-8 text"):
         read_definition(file)
+
+
+def test_the_cubes_size_reaches_the_clips_and_leaves_old_definitions_their_hash(
+    raw: dict[str, Any],
+) -> None:
+    before = parse_definition(raw).definition_hash
+    raw["eye"] = {**raw.get("eye", {}), "cube_size": "table"}
+    assert parse_definition(raw).definition_hash == before
+    raw["eye"]["cube_size"] = "auto"
+    automatic = parse_definition(raw)
+    assert automatic.definition_hash != before
+    assert {wanted.spec.cube_size for wanted in automatic.wanted_specs()} == {"auto"}
+    raw["eye"]["cube_size"] = "tiny"
+    with pytest.raises(DefinitionError, match=r'eye\.cube_size: .*"tiny"'):
+        parse_definition(raw)
