@@ -6,103 +6,40 @@ says; the white of the eye serves as the white card.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
-from scipy import ndimage, optimize
+from scipy import ndimage
 
 from renderer.eye.chamber import chamber_irradiance
 from renderer.iris.maps import IRIS_RADIUS_MM, PUPIL_RADIUS_MM
+from renderer.unrefraction.limbus import Limbus
+from renderer.unrefraction.limbus_fit import SCLERA, mirrored
 from renderer.unrefraction.texels import Field, Texels
 
 Mask = npt.NDArray[np.bool_]
 
-# Linear Rec. 709 reflectance of healthy sclera at the side of the iris (reference 1.6).
-SCLERA: Final = np.array([0.72, 0.66, 0.60], np.float32)
-# An iris in its maps' colours is drawn 1 / 0.88 times as bright as sclera of the same reflectance:
+# An iris in its maps' colours is drawn 1 / 0.89 times as bright as sclera of the same reflectance:
 # the maps hold what shows through a cornea (eyes.APPARENT_GAIN = 1.3 brightens them) and the layers
 # take some of the light away (LAYERS_RETURN = 0.86 in shaders/subsurface.glsl, and the gain that
 # renderer.eye.subsurface normalises in the clip's own light). Measured under an even sky with
-# portraits at "ultra", blue and brown alike within 1 %: change either and measure again, for
+# portraits at "ultra", blue and brown alike within 2 %: change either and measure again, for
 # test_unrefraction compares brightness without fitting any gain.
-IRIS_TO_WHITE: Final = 0.88
+IRIS_TO_WHITE: Final = 0.89
 CAST: Final = 1.5  # at most so much of a colour cast is taken for the light's
-VEIL_PERCENTILE: Final = 40.0  # of the pupil, which is black but for what the cornea mirrors
-WAVES: Final = 2  # turns of the light around the eye that are taken for light, not for tissue
+WAVES: Final = 2  # turns around the eye that light makes; tissue makes all
+TISSUE_WAVES: Final = 6  # up to so many turns say how much tissue alone waves
 TOO_STEEP: Final = 0.7  # of the logarithm: no light falls off further over an iris
-
-
-@dataclass(frozen=True)
-class Limbus:
-    """The veil's shape: share of iris = 1 / (1 + exp((r - middle) / width)), r on the surface.
-
-    Half-way the limbal ring dims both iris and veil to ``ring``; 1 is none.
-    """
-
-    middle_mm: float
-    width_mm: float
-    ring: float = 1.0
-
-    def clear(self, surface_mm: Field) -> Field:
-        """Return the share of light that comes from the iris."""
-        far = np.clip((surface_mm - self.middle_mm) / self.width_mm, -30, 30)
-        return np.asarray(1.0 / (1.0 + np.exp(far)), np.float32)
-
-    def dimmed(self, surface_mm: Field) -> Field:
-        """Return the share of light that the limbal ring leaves."""
-        share = self.clear(surface_mm)
-        edge = 4.0 * share * (1.0 - share)
-        return np.asarray(1.0 + (self.ring - 1.0) * edge * edge, np.float32)
-
-
-def find_limbus(colour: Field, texels: Texels) -> tuple[Limbus, Field]:
-    """Fit the veil to the sides of a map's colours; return it and the sclera's colour (3,)."""
-    angle = np.degrees(np.abs(texels.angle))
-    sides = np.minimum(angle, 180 - angle) < 30
-    r = texels.surface_mm[sides]
-    light = colour[sides]
-    bins = np.arange(4.9, 6.31, 0.05)
-    number = np.digitize(r, bins)
-    curve = np.array(
-        [
-            np.median(light[number == k], axis=0) if (number == k).any() else [np.nan] * 3
-            for k in range(1, len(bins))
-        ]
-    )
-    at = 0.5 * (bins[1:] + bins[:-1])
-    known = np.isfinite(curve[:, 0])
-    at, shade = at[known], curve[known].mean(axis=-1)
-    if len(at) < 8:
-        return Limbus(5.76, 0.15), SCLERA
-
-    def error(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        iris, slope, sclera, middle, width, ring = values
-        share = 1 / (1 + np.exp(np.clip((at - middle) / width, -30, 30)))
-        dimmed = 1 + (ring - 1) * (4 * share * (1 - share)) ** 2
-        drawn = dimmed * (share * (iris + slope * (at - 5.3)) + (1 - share) * sclera)
-        return np.asarray(drawn - shade)
-
-    fit = optimize.least_squares(
-        error,
-        [shade[0], 0.0, shade[-1], 5.76, 0.15, 0.8],
-        bounds=([0, -0.3, 0, 5.4, 0.04, 0.3], [2, 0.0, 4, 6.0, 0.35, 1.0]),
-    )
-    limbus = Limbus(*(float(v) for v in fit.x[3:]))
-    outside = r > limbus.middle_mm + 3.0 * limbus.width_mm
-    white = np.median(light[outside], axis=0) if outside.sum() > 20 else curve[known][-1]
-    return limbus, np.asarray(white, np.float32)
 
 
 def lift_veils(colour: Field, texels: Texels, *, limbus: Limbus, white: Field) -> Field:
     """Return a map's colours without mirrored light, sclera's veil and the cornea's losses."""
-    inner = colour[texels.radius_mm < 0.8 * PUPIL_RADIUS_MM]
-    veil = np.percentile(inner, VEIL_PERCENTILE, axis=0).astype(np.float32)
-    share = np.maximum(limbus.clear(texels.surface_mm), 0.2)[..., None]
-    bright = colour / limbus.dimmed(texels.surface_mm)[..., None]
-    bare = (bright - (1.0 - share) * white) / share - veil
+    veil = mirrored(colour, texels)
+    share = np.maximum(limbus.clear(texels.surface_mm, texels.bearing), 0.2)[..., None]
+    bright = (colour - veil) / limbus.dimmed(texels.surface_mm, texels.bearing)
+    bare = (bright - (1.0 - share) * (white - veil)) / share
     return np.maximum(bare / np.maximum(texels.transmitted, 0.5)[..., None], 1e-4)
 
 
@@ -110,8 +47,9 @@ def even_light(colour: Field, texels: Texels, *, seen: Mask, pupil_mm: float) ->
     """Return colours (n, n, 3) as under one even light.
 
     The light's fall towards the limbus is that of an even sky through the cornea. What then turns
-    once or twice around the eye in smooth waves is taken for the light's, so that a real
-    darkening of one half of an iris is lost, while colours and narrower sectors stay.
+    once or twice around the eye in smooth waves is taken for the light's as far as it exceeds what
+    three to six turns show of the tissue's own sectors, so that a darkening of one half of an iris
+    that stands out from them is lost, while colours and narrower sectors stay.
     """
     true = np.where(
         texels.radius_mm < PUPIL_RADIUS_MM,
@@ -154,14 +92,32 @@ def _smooth_waves(light: Field, texels: Texels, seen: Mask) -> Field:
         fitted = np.linalg.solve(normal, design.T @ (weight * value))
         off = np.abs(value - design @ fitted)
         weight = 1.0 / np.maximum(1.0, off / (1.5 * np.median(off) + 1e-6))
+    lights = fitted[20:] * _lights_share(fitted[20:])
     basis = _wave_basis(texels.radius_mm, texels.angle)
-    return np.clip(basis @ fitted[20:], -TOO_STEEP, TOO_STEEP).astype(np.float32)
+    return np.asarray(np.clip(basis @ lights, -TOO_STEEP, TOO_STEEP), np.float32)
+
+
+def _lights_share(waves: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return which share of each wave is the light's (Wiener): the rest is the tissue's own.
+
+    Narrow sectors of tissue wave less than wide ones: their power is taken to fall as 1 / turns.
+    """
+    power = np.square(waves).reshape(-1, 2).sum(axis=-1)
+    turns = np.arange(1, TISSUE_WAVES + 1)
+    tissue = (turns * power)[WAVES:].mean() / turns
+    share = np.clip(1.0 - tissue / np.maximum(power, 1e-12), 0.0, 1.0)
+    share[WAVES:] = 0.0
+    return np.repeat(share, 2)
 
 
 def _wave_basis(r: Field, angle: Field) -> Field:
-    """Return waves around the eye that grow from its middle, (..., 2 WAVES)."""
+    """Return waves around the eye that grow from its middle, (..., 2 TISSUE_WAVES)."""
     reach = np.clip(r / 5.0, 0.0, 1.2)
-    parts = [reach**k * f(k * angle) for k in range(1, WAVES + 1) for f in (np.cos, np.sin)]
+    parts = [
+        reach ** min(k, WAVES) * f(k * angle)
+        for k in range(1, TISSUE_WAVES + 1)
+        for f in (np.cos, np.sin)
+    ]
     return np.stack(parts, axis=-1)
 
 

@@ -19,10 +19,10 @@ from scipy import optimize
 from renderer.eye.anatomy import CORNEA_IOR, LIMBUS_HEIGHT_RATIO, LIMBUS_Z_MM
 from renderer.eye.optics import refract, surface_height, surface_normal, to_iris_plane, unit
 from renderer.unrefraction.edges import Edges
+from renderer.unrefraction.limbus import half_way_mm
 
 Array = npt.NDArray[np.float64]
 
-VISIBLE_LIMBUS_MM: Final = 5.85  # where half of the light is sclera's, beside the limbal ring
 RUFF_MM: Final = 0.005  # how far outside of the pupil's rim its dark lining begins to show
 LIMBUS_DEPTH_MM: Final = 0.035  # sclera shines from so far beneath the surface
 RIM_DEPTH_MM: Final = 0.075  # the rim lies so far behind the iris's mean surface, its plane
@@ -146,6 +146,10 @@ _LIMBUS: Final = np.array([0.0, 0.0, LIMBUS_Z_MM])
 _CIRCLE: Final = np.stack(
     [f(np.arange(CONTOUR) / CONTOUR * 2 * np.pi) for f in (np.cos, np.sin)], axis=-1
 )
+# Where half of the light is the sclera's: further out above and below, where the edge is softer.
+VISIBLE_LIMBUS_MM: Final = np.array(
+    [[half_way_mm(k / CONTOUR * 2 * np.pi)] for k in range(CONTOUR)]
+)
 
 
 def on_surface(s: Array) -> Array:
@@ -169,7 +173,7 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
     at another scale.
     """
     limbus, pupil = edges.limbus, edges.pupil
-    start_scale = limbus.ellipse.major / VISIBLE_LIMBUS_MM
+    start_scale = limbus.ellipse.major / float(VISIBLE_LIMBUS_MM[0, 0])
     roll, spread = _roll(turn), math.radians(ROLL_DEG)
     limbus_noise = LIMBUS_NOISE_MM
     start = np.array(

@@ -17,13 +17,9 @@ from renderer.textures.sizes import pack_albedo, pack_range
 from renderer.unrefraction import visible
 from renderer.unrefraction.fill import fill_hidden
 from renderer.unrefraction.found import describe
-from renderer.unrefraction.light import (
-    Limbus,
-    even_light,
-    find_limbus,
-    lift_veils,
-    to_reflectance,
-)
+from renderer.unrefraction.light import even_light, lift_veils, to_reflectance
+from renderer.unrefraction.limbus import Limbus
+from renderer.unrefraction.limbus_fit import find_limbus
 from renderer.unrefraction.photograph import Photograph
 from renderer.unrefraction.pose import Pose
 from renderer.unrefraction.quality import (
@@ -126,7 +122,7 @@ def _seen(
     step = n // visible.GRID_PX
     coarse = colour.reshape(visible.GRID_PX, step, visible.GRID_PX, step, 3).mean(axis=(1, 3))
     sparse = place_texels(pose, visible.GRID_PX)
-    lids = visible.find_lids(coarse, sparse, clear=limbus.clear(sparse.surface_mm))
+    lids = visible.find_lids(coarse, sparse, clear=limbus.clear(sparse.surface_mm, sparse.bearing))
     height, width = crop.pixels.shape[:2]
     inside = (
         (texels.x_px > 1)
@@ -140,7 +136,7 @@ def _seen(
     open_part = (
         inside
         & visible.between_lids(lids, n)
-        & (limbus.clear(texels.surface_mm) > visible.LIMBUS_CLEAR)
+        & (limbus.clear(texels.surface_mm, texels.bearing) > visible.LIMBUS_CLEAR)
     )
     tissue = (texels.radius_mm > PUPIL_RADIUS_MM + 0.15) & (texels.radius_mm < UNVEILED_MM)
     burnt = colour.min(axis=-1) > CLIPPED

@@ -31,8 +31,9 @@ class Texels:
 
     ``radius_mm`` and ``angle`` are on the maps, ``x_px`` and ``y_px`` in the photograph,
     ``surface_mm`` the distance from the eye's axis of the corneal point in front of it, above and
-    below scaled by the limbus's height (5.85 on the limbus), ``transmitted`` the share of light
-    that leaves the cornea towards the camera.
+    below scaled by the limbus's height (5.85 on the limbus), ``bearing`` that point's direction
+    from the axis, ``transmitted`` the share of light that leaves the cornea towards the camera.
+    Both angles are in radians from +x, anticlockwise.
     """
 
     radius_mm: Field
@@ -40,6 +41,7 @@ class Texels:
     x_px: Field
     y_px: Field
     surface_mm: Field
+    bearing: Field
     transmitted: Field
 
 
@@ -57,7 +59,8 @@ def place_texels(pose: Pose, size_px: int) -> Texels:
     entry = pose.entry(grid)
     pixels = pose.project(entry)
     cosine = np.sum(unit(pose.camera_mm - entry) * surface_normal(entry), axis=-1)
-    surface = np.hypot(entry[..., 0], entry[..., 1] / pose.height_ratio)
+    above = entry[..., 1] / pose.height_ratio
+    clear = np.hypot(entry[..., 0], above) < LIMBUS_RADIUS_MM + 0.3
     at = [np.clip((v + ROOM_MM) / (2 * ROOM_MM) * (KNOTS - 1), 0, KNOTS - 1) for v in plane[::-1]]
 
     def between(values: Array) -> Field:
@@ -65,13 +68,15 @@ def place_texels(pose: Pose, size_px: int) -> Texels:
             ndimage.map_coordinates(values, at, order=3, mode="nearest"), dtype=np.float32
         )
 
+    right_mm, up_mm = between(entry[..., 0]), between(above)
     return Texels(
         radius_mm=radius.astype(np.float32),
         angle=np.arctan2(y, x).astype(np.float32),
         x_px=between(pixels[..., 0]),
         y_px=between(pixels[..., 1]),
-        surface_mm=between(surface),
-        transmitted=between((1.0 - fresnel(cosine)) * (surface < LIMBUS_RADIUS_MM + 0.3)),
+        surface_mm=np.hypot(right_mm, up_mm),
+        bearing=np.arctan2(up_mm, right_mm),
+        transmitted=between((1.0 - fresnel(cosine)) * clear),
     )
 
 

@@ -25,7 +25,7 @@ LID_MARGIN_MM: Final = 0.3  # wet edge and shadow of a lid's rim
 RINGS: Final = 24
 BLACK: Final = 1.4  # in the logarithm: darker against its ring than any shade of a lid
 GLINT_MARGIN_MM: Final = 0.08
-LIMBUS_CLEAR: Final = 0.88  # where less light than this comes from the iris, it is not used
+LIMBUS_CLEAR: Final = 0.85  # where less light than this comes from the iris, it is not used
 
 
 @dataclass(frozen=True)

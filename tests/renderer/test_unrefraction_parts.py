@@ -13,7 +13,7 @@ from renderer.iris.maps import PUPIL_RADIUS_MM
 from renderer.unrefraction.edges import Edge, Edges
 from renderer.unrefraction.ellipse import Ellipse, fit_ellipse, robust_ellipse
 from renderer.unrefraction.fill import fill_hidden
-from renderer.unrefraction.light import Limbus, even_light, find_limbus, lift_veils
+from renderer.unrefraction.light import even_light
 from renderer.unrefraction.pose import TELECENTRIC_MM, Pose, find_pose, seen_through
 from renderer.unrefraction.search import find_candidates
 from renderer.unrefraction.texels import Texels, place_texels
@@ -108,21 +108,6 @@ def test_texels_at_the_maps_pupil_lie_on_the_photographs_pupil(texels: Texels) -
     assert upper < 280.0, "the maps' y points up, the picture's down"
 
 
-def test_the_limbus_veil_is_measured_and_lifted(texels: Texels) -> None:
-    iris, white = np.array([0.10, 0.12, 0.20]), np.array([0.6, 0.55, 0.5])
-    clear = Limbus(5.7, 0.15).clear(texels.surface_mm)[..., None]
-    pupil = texels.radius_mm[..., None] < PUPIL_RADIUS_MM
-    veil = 0.02  # mirrored everywhere
-    colour = (np.where(pupil, 0.0, clear * iris + (1 - clear) * white) + veil).astype(np.float32)
-    limbus, found = find_limbus(colour, texels)
-    assert limbus.middle_mm == pytest.approx(5.7, abs=0.05)
-    assert limbus.width_mm == pytest.approx(0.15, abs=0.04)
-    bare = lift_veils(colour, texels, limbus=limbus, white=found)
-    ring = (texels.radius_mm > 2.3) & (texels.surface_mm < 5.3)
-    expected = iris / texels.transmitted[ring][:, None]
-    np.testing.assert_allclose(bare[ring], expected, rtol=0.08)
-
-
 def test_a_slope_of_the_light_is_taken_off_and_fibres_stay(texels: Texels) -> None:
     fibres = 0.2 + 0.05 * np.sign(np.sin(40 * texels.angle))
     slope = np.exp(0.08 * texels.radius_mm * np.sin(texels.angle))
@@ -143,6 +128,16 @@ def test_a_slope_of_the_light_is_taken_off_and_fibres_stay(texels: Texels) -> No
 
     assert unevenness(np.ones_like(slope)) == pytest.approx(1.0, abs=0.02)
     assert unevenness(slope) == pytest.approx(1.0, abs=0.06), "was 1.6 before"
+
+
+def test_sectors_of_tissue_are_not_taken_for_light(texels: Texels) -> None:
+    sectors = sum(0.15 / k**0.5 * np.cos(k * texels.angle + k * k) for k in range(1, 7))
+    seen = (texels.radius_mm > 2.1) & (texels.radius_mm < 5.2)
+    look = np.repeat(np.exp(-1.5 + sectors)[..., None], 3, axis=-1).astype(np.float32)
+    level = even_light(look, texels, seen=seen, pupil_mm=3.0)[..., 0]
+    ring = (texels.radius_mm > 4.0) & (texels.radius_mm < 4.3)
+    kept = np.polyfit(sectors[ring], np.log(level[ring]), 1)[0]
+    assert kept == pytest.approx(1.0, abs=0.1), "was 0.5 when all slow waves were light's"
 
 
 def test_hidden_tissue_is_filled_like_the_rest_and_seen_tissue_stays(texels: Texels) -> None:
