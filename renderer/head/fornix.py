@@ -1,7 +1,7 @@
 """The fold of conjunctiva behind the globe: what shows where a coarse globe leaves the lids a gap.
 
 A mesh of few triangles lies inside the globe that the lids were fitted to, by 0.4 mm at the lowest
-tessellation. Past its edge one looks at pink tissue in the dark, never through the head.
+tessellation. Past its edge one looks at pink tissue in shade, never through the head.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ RADIUS_MM: Final = 12.6  # a little more than the globe's
 NASAL_MM: Final = 26.0  # towards the nose, which hides it: one looks far in from the temple
 DEPTH_MM: Final = -0.5  # behind the globe's centre
 SIDES: Final = 48
-TISSUE: Final = (0.42, 0.20, 0.17)  # reflectance of conjunctiva
-REACHED: Final = 0.25  # share of the light from in front that comes so far
+TISSUE: Final = (0.52, 0.33, 0.28)  # reflectance of conjunctiva
+REACHED: Final = 0.65  # share of the light from in front that comes so far
 COSINE_LOBE: Final = np.array([1.0] + 3 * [2 / 3] + 5 * [1 / 4])  # Ramamoorthi, Hanrahan 2001
 
 
