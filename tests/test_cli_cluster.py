@@ -33,7 +33,7 @@ SPEC = ClipSpec(
     duration_s=0.2,
     fps=10,
 )
-RENDERER_TESTS = Path(__file__).parent / "renderer"
+RENDERER_TESTS = Path(__file__).parent / "renderer" / "production"
 
 
 @contextmanager

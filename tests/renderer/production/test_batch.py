@@ -123,7 +123,7 @@ def test_after_kill_9_the_batch_resumes_and_keeps_what_was_done(tmp_path: Path) 
     here = Path(__file__).parent
     killed = subprocess.run(
         [sys.executable, "-c", KILLED, str(tmp_path), str(here)],
-        env=os.environ | {"PYTHONPATH": str(here.parents[1])},
+        env=os.environ | {"PYTHONPATH": str(here.parents[2])},
         check=False,
     )
     assert killed.returncode == -signal.SIGKILL
