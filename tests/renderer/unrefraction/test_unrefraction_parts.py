@@ -70,7 +70,7 @@ def test_the_entry_point_is_where_the_camera_sees_the_iris_point(yaw_deg: float)
 
 
 def test_the_cornea_magnifies_the_pupil() -> None:
-    """4.00 mm look 4.44 mm wide off the axis: tests/renderer/eye/test_eyes.py says the same of GL."""
+    """4.00 mm look 4.44 mm wide off the axis: renderer/eye/test_eyes.py says the same of GL."""
     wide = np.ptp(LEVEL.pupil()[:, 0]) / LEVEL.px_per_mm
     assert wide == pytest.approx(4.44 * (1 + 0.005 / 2.0), abs=0.02)
 
