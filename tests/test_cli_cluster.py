@@ -12,7 +12,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from distributed import LocalCluster
+from distributed import Client, LocalCluster
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
@@ -55,12 +55,20 @@ def folder_of_orders(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def address(folder_of_orders: Path) -> Iterator[str]:
+def cluster_of_two(folder_of_orders: Path) -> Iterator[LocalCluster]:
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(RENDERER_TESTS)
         patch.setenv("OCULARIST_TEST_FOLDER", str(folder_of_orders))
         with local_cluster(2) as started:
-            yield started.scheduler_address
+            yield started
+
+
+@pytest.fixture
+def address(cluster_of_two: LocalCluster) -> str:
+    """The cluster's address once both workers are there: a test before may have killed them."""
+    with Client(cluster_of_two.scheduler_address) as client:
+        client.wait_for_workers(2, timeout=120)
+    return str(cluster_of_two.scheduler_address)
 
 
 @pytest.fixture
