@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import io
 import json
+import logging
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
@@ -26,6 +27,7 @@ from study.inspection.look import LARGEST_PX, Look, code_of
 from study.site.headers import SecureHeaders
 from study.site.resources import resource_folder
 
+log = logging.getLogger("ocularist.inspect")
 QUALITY: Final = 92  # of the JPEG: a look, no stimulus
 
 
@@ -88,14 +90,14 @@ def create_inspection(
     app.mount("/static", StaticFiles(directory=resource_folder("static")))
     templates = Jinja2Templates(directory=resource_folder("templates"))
 
-    @app.exception_handler(Exception)
-    async def broken(_request: Request, error: Exception) -> Response:
-        return PlainTextResponse(f"{type(error).__name__}: {error}", status_code=500)
-
     async def drawn(draw: Callable[[Draughtsman], Picture]) -> Response:
-        picture = await asyncio.get_running_loop().run_in_executor(
-            thread, lambda: draw(draughtsman())
-        )
+        try:
+            picture = await asyncio.get_running_loop().run_in_executor(
+                thread, lambda: draw(draughtsman())
+            )
+        except Exception as error:
+            log.exception("no picture")
+            return PlainTextResponse(f"{type(error).__name__}: {error}", status_code=500)
         file = io.BytesIO()
         Image.fromarray(picture.pixels).save(file, "JPEG", quality=QUALITY, subsampling=0)
         facts = json.dumps(picture.facts)

@@ -36,7 +36,7 @@ PLAN = Plan(
 )
 
 
-def striped_iris(_seed: int, _colour: str, *, size_px: int) -> IrisMaps:
+def striped_iris(_seed: int, _colour: str, *, size_px: int, **_base: int) -> IrisMaps:
     """An iris whose colour tells left from right and up from down."""
     axis = (np.arange(size_px, dtype=np.float32) + 0.5) / size_px * 2 - 1
     x, y = np.meshgrid(axis, axis)

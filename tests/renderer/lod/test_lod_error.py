@@ -62,7 +62,7 @@ def mean_error(errors: list[LodError], lod: str, size: float) -> float:
 
 
 def test_the_committed_figures_are_measured_again(errors: list[LodError]) -> None:
-    text = (resources.files("renderer") / DEFAULT_NAME).read_text(encoding="utf-8")
+    text = (resources.files("renderer.lod") / DEFAULT_NAME).read_text(encoding="utf-8")
     committed: dict[str, Any] = json.loads(text)["provenance"]["mean_error"]
     low = mean_error(errors, "low", 45.0)
     assert low == pytest.approx(committed["low"]["45"], rel=TOLERANCE)
