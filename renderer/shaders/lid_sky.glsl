@@ -19,7 +19,7 @@ vec3 sky_radiance(vec3 d) {
 float mean_lash_cover(vec3 at, vec3 d_eye, float room_mm) {
     float climb = d_eye.y / max(d_eye.z, 0.05);
     float root2 = climb * climb - 4.0 * LASH_CURL * room_mm;
-    if (climb <= 0.0 || root2 <= 0.0) return 0.0;
+    if (climb <= 0.0 || root2 <= 0.0 || room_mm > LASH_ROOM_MM) return 0.0;
     float way = max((climb - sqrt(root2)) / (2.0 * LASH_CURL), 0.0) / LASH_REACH_MM;
     float hairs = 2.0 * 0.9 * LASH_HALF_MM * LASHES_PER_MM;  // seen square on
     // A ray along the hairs passes more of them than one across.

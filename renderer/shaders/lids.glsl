@@ -23,6 +23,7 @@ const float LASH_FAN = 0.09;       // sideways per mm of way and mm off the midd
 const float LASH_HALF_MM = 0.03;
 const float LASHES_PER_MM = 6.0;   // in all rows
 const float LASH_END_MM = 12.2;    // off the middle
+const float LASH_ROOM_MM = 12.0;   // below the rim no ray is that meets them: no eye opens wider
 const int LASH_ROWS = 3;
 
 // Four numbers of 0 to 1 from a cell's (Jenkins's mix, the same on every renderer).
@@ -57,7 +58,7 @@ float lash_hairs(float root_mm, float way_mm, float blur_mm) {
 float lash_cover(vec3 at, vec3 d_eye, float room_mm, float reach_mm) {
     float climb = d_eye.y / max(d_eye.z, 0.05);
     float root2 = climb * climb - 4.0 * LASH_CURL * room_mm;
-    if (climb <= 0.0 || root2 <= 0.0 || room_mm < -2.0) return 0.0;
+    if (climb <= 0.0 || root2 <= 0.0 || room_mm < -2.0 || room_mm > LASH_ROOM_MM) return 0.0;
     float way = max((climb - sqrt(root2)) / (2.0 * LASH_CURL), 0.0);
     if (way > LASH_REACH_MM) return 0.0;
     float root_mm = (at.x + way * d_eye.x / max(d_eye.z, 0.05)) / (1.0 + LASH_FAN * way);

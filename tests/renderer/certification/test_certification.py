@@ -15,7 +15,7 @@ from renderer.certification.certificate import Certificate, certify, picture_res
 from renderer.certification.plan import Case, Plan
 from renderer.certification.report import write_report
 from renderer.certification.tracer import SAFE_VARIANT, path_tracer
-from renderer.eye import eyes, maps
+from renderer.eye import maps, model
 from renderer.eye.sclera import ScleraMaps
 from renderer.gallery.certificate import certificate_strips
 from renderer.iris import maps as iris
@@ -131,7 +131,7 @@ def test_a_tenth_more_light_in_the_iris_is_found(
     """The comparison can fail: one side alone is brightened."""
     mi = path_tracer(SAFE_VARIANT)
     shapes = twin_of(mi, CASES[1].iris)
-    monkeypatch.setattr(eyes, "APPARENT_GAIN", 1.1 * eyes.APPARENT_GAIN)
+    monkeypatch.setattr(model, "APPARENT_GAIN", 1.1 * model.APPARENT_GAIN)
     score = picture_result(gl, mi, CASES[1], shapes=shapes, plan=PLAN, seed=0).score
     assert min(score.regions["iris"].bias_percent) > 6.0
     assert max(score.regions["iris"].rms_without_noise_percent) > 3.0
