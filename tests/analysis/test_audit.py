@@ -95,11 +95,11 @@ def test_limits_tell_simulation_sample_and_side_by_side(thesis_tables: Tables) -
 
 def test_limits_without_ratings_begin_with_that(thesis_frames: dict[str, object]) -> None:
     ratings = thesis_frames["ratings"]
-    empty = tables_from({"ratings": ratings.head(0)})  # type: ignore[attr-defined]
+    empty = tables_from({"ratings": ratings.head(0)})
     assert limits(empty, audit_design([]))[0] == (
         "There are no ratings yet, so nothing can be said about realism."
     )
-    missing = tables_from({"ratings": ratings.assign(rating=None)})  # type: ignore[attr-defined]
+    missing = tables_from({"ratings": ratings.assign(rating=None)})
     assert limits(missing, audit_design([]))[0] == (
         "All ratings are missing, so nothing can be said about realism."
     )

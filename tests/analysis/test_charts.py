@@ -85,8 +85,8 @@ def test_bars_of_shares_are_whole(drawn: dict[str, Figure]) -> None:
         axes = drawn[name].axes[0]
         bars: dict[float, float] = {}
         for patch in axes.patches:
-            y = round(patch.get_y(), 6)  # type: ignore[attr-defined]
-            bars[y] = bars.get(y, 0.0) + patch.get_width()  # type: ignore[attr-defined]
+            y = round(patch.get_y(), 6)
+            bars[y] = bars.get(y, 0.0) + patch.get_width()
         assert list(bars.values()) == pytest.approx([1.0] * len(bars)), name
 
 

@@ -50,6 +50,6 @@ def test_an_old_driver_is_not_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     class Old:
         version_code = 430
 
-    old: moderngl.Context = Old()  # type: ignore[assignment]  # no such driver is at hand
+    old: moderngl.Context = Old()  # no such driver is at hand
     monkeypatch.setattr("renderer.benchmark.gl_memory.gl_function", None)
     assert gl_bytes(old) == {}
