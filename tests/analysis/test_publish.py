@@ -1,6 +1,7 @@
 """The whole way: tables in; charts, tables and one self-contained report out."""
 
 import json
+import operator
 import re
 import subprocess
 import sys
