@@ -18,6 +18,7 @@ from scipy import ndimage
 
 from renderer.unrefraction.ellipse import Ellipse, robust_ellipse
 from renderer.unrefraction.search import Candidate
+from renderer.unrefraction.softness import LEVELS, Softness, find_softness
 
 Array = npt.NDArray[np.float64]
 Picture = npt.NDArray[np.float32]
@@ -43,10 +44,11 @@ class Edge:
 
 @dataclass(frozen=True)
 class Edges:
-    """Pupil and limbus of one eye."""
+    """Pupil and limbus of one eye, and where the limbus is soft, if enough of it is seen."""
 
     pupil: Edge
     limbus: Edge
+    softness: Softness | None = None
 
 
 def find_edges(value: Picture, red: Picture, start: Candidate) -> Edges | None:
@@ -78,7 +80,16 @@ def find_edges(value: Picture, red: Picture, start: Candidate) -> Edges | None:
         reach=(0.7, 1.35),
         rise=RUFF_LEVEL * _sclera_light(value, limbus.ellipse),
     )
-    return Edges(ruff or pupil, limbus)
+    return Edges(ruff or pupil, limbus, _softness(red, limbus.ellipse))
+
+
+def _softness(red: Picture, limbus: Ellipse) -> Softness | None:
+    inner, outer = (
+        edge_points(red, (limbus.x, limbus.y), limbus.radius, reach=(0.82, 1.2), level=level)
+        for level in LEVELS
+    )
+    tolerance = LIMBUS_TOLERANCE * limbus.radius
+    return find_softness(inner, outer, limbus, rays=RAYS, tolerance=tolerance)
 
 
 def _sclera_light(picture: Picture, limbus: Ellipse) -> float:

@@ -92,7 +92,12 @@ def mean_edge_mm(limbus: Limbus) -> float:
 
 
 def half_way_mm(bearing: float) -> float:
-    """Return where the average eye's light has climbed half of its step from iris to white.
+    """Return where the average eye's light has climbed half of its step from iris to white."""
+    return climbed_mm(bearing, 0.5)
+
+
+def climbed_mm(bearing: float, share: float) -> float:
+    """Return where the average eye's light has climbed a share of its step from iris to white.
 
     Both sides are taken where ``edges.edge_points`` takes them: 6 to 18 % of the radius away.
     """
@@ -104,4 +109,5 @@ def half_way_mm(bearing: float) -> float:
     off = r / LIMBUS_RADIUS_MM - 1.0
     inner, outer = (np.median(light[(s * off > 0.06) & (s * off < 0.18)]) for s in (-1, 1))
     outside = off > -RING_INSIDE_MM / LIMBUS_RADIUS_MM  # from here the light only grows
-    return float(np.interp(0.5 * (inner + outer), light[outside], r[outside]))
+    level = inner + share * (outer - inner)
+    return float(np.interp(level, light[outside], r[outside]))

@@ -35,7 +35,7 @@ TILT_DEG: Final = 12.0  # people look into a camera that is asked to photograph 
 DECENTRE_MM: Final = 0.15
 HEIGHT_RATIO: Final = 0.015
 PUPIL_OVAL: Final = 0.012  # of the radius, along and across: no pupil is quite round
-ROLL_DEG: Final = 12.0  # about the coarse search's, which goes in steps of 45
+ROLL_DEG: Final = 30.0  # about the coarse search's, which goes in steps of 45: nearly even
 ROLL: Final = 9  # its place among the fitted parameters
 SNAP_DEG: Final = 10.0  # rolls below this are taken for none
 PUPIL_NOISE_MM: Final = 0.025  # of single edge points: the ruff's scallops
@@ -233,7 +233,8 @@ def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float
                 trial.oval[1] / PUPIL_OVAL,
             ]
         )
-        return np.concatenate([*parts, prior])
+        soft = [] if edges.softness is None else [edges.softness.errors(trial.roll)]
+        return np.concatenate([*parts, *soft, prior])
 
     x_scale = np.array([1.0, 1.0, 0.01, 0.1, 0.1, 0.05, 0.1, 0.1, 0.01, 0.1, 0.01, 0.01])
 

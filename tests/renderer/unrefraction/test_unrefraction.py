@@ -131,6 +131,17 @@ def test_the_eye_is_found_in_worse_photographs(blue_photo: np.ndarray, how: str)
     assert off_centre_mm(seen) < 0.1
 
 
+@pytest.mark.parametrize("turn_deg", [-17, 30])
+def test_a_turned_eye_is_no_eye_that_looks_aside(blue_photo: np.ndarray, turn_deg: int) -> None:
+    picture = Image.fromarray(blue_photo).rotate(turn_deg, fillcolor=(190, 180, 170))
+    seen = see_eye(photographed(np.asarray(picture)), distance_mm=DISTANCE_MM)
+    assert seen.edges.softness is not None
+    off = seen.edges.softness.errors(math.radians(turn_deg))
+    assert np.abs(off).max() < 1.5
+    assert math.degrees(seen.pose.roll) == pytest.approx(turn_deg, abs=4.0)
+    assert seen.pose.tilt_deg < 6.0
+
+
 def off_centre_mm(seen: Sighting) -> float:
     middle = (PHOTO_PX - 1) / 2
     centre = seen.crop.to_photograph(np.array([seen.pose.x, seen.pose.y]))
