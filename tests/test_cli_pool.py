@@ -104,6 +104,25 @@ if __name__ == "__main__":
 """
 
 
+MASKED = """
+import signal
+from study.commands.pool import Pool
+
+if __name__ == "__main__":
+    with Pool(2, threads=1) as pool:
+        for call in [pool.submit(signal.pthread_sigmask, signal.SIG_BLOCK, []) for _ in range(4)]:
+            assert signal.SIGINT in call.result()
+"""
+
+
+def test_even_the_first_process_leaves_ctrl_c_to_its_keeper(tmp_path: Path) -> None:
+    script = tmp_path / "masked.py"  # a fresh process: here others have started Python's tracker
+    script.write_text(MASKED)
+    subprocess.run(
+        [sys.executable, str(script)], env=os.environ | {"PYTHONPATH": str(ROOT)}, check=True
+    )
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_no_process_outlives_its_keeper(tmp_path: Path, number: signal.Signals) -> None:
     script = tmp_path / "keeper.py"

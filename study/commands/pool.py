@@ -21,6 +21,7 @@ from concurrent.futures import (
     ThreadPoolExecutor,
 )
 from functools import partial
+from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any, ParamSpec, TypeVar
 
@@ -39,6 +40,8 @@ class Pool(Executor):
     """
 
     def __init__(self, count: int, *, threads: int) -> None:
+        # Python starts it with the first process, and then unblocks SIGINT in that thread for good.
+        resource_tracker.ensure_running()
         self._threads = ThreadPoolExecutor(
             count, thread_name_prefix="pool", initializer=_leave_interrupts_to_others
         )
