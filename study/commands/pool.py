@@ -116,7 +116,7 @@ class _Recording(SpawnContext):
         super().__init__()
         self.started: list[SpawnProcess] = []
 
-    def Process(self, *args: Any, **kwargs: Any) -> SpawnProcess:  # type: ignore[override] # noqa: N802 - the library's name, a class there
+    def Process(self, *args: Any, **kwargs: Any) -> SpawnProcess:  # type: ignore[override] # noqa: N802 - multiprocessing names it so, a class there
         process = SpawnProcess(*args, **kwargs)
         self.started.append(process)
         return process

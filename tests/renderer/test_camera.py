@@ -10,6 +10,7 @@ import pytest
 from renderer.camera import (
     IRIS_PX,
     LIMBUS_Z_MM,
+    View,
     camera_radius_mm,
     cropped,
     eye_centre_mm,
@@ -23,7 +24,7 @@ from renderer.detail import Detail
 LOW = Detail.uniform("low")
 
 
-def project(view, point_mm):  # type: ignore[no-untyped-def]
+def project(view: View, point_mm: np.ndarray) -> np.ndarray:
     clip = view.projection @ view.view_matrix @ np.append(point_mm, 1.0)
     x, y, width, height = view.rectangle
     return np.array(

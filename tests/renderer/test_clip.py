@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from typing import Any
 
 import pytest
 
@@ -82,9 +83,13 @@ def test_clips_that_neither_approach_nor_switch_keep_the_names_they_had() -> Non
     assert ClipSpec(left=LOW, right=ULTRA, approach_start_px=12.0).clip_id == "123a732dd9bed0c56b3b"
 
 
-def approach(**values: object) -> ClipSpec:
-    fields = {"motion": "approach", "approach_start_px": 12.0, "approach_end_px": 192.0}
-    return ClipSpec(**{"left": ULTRA, "right": ULTRA, **fields, **values})  # type: ignore[arg-type] # any field
+def approach(**values: Any) -> ClipSpec:
+    fields: dict[str, Any] = {
+        "motion": "approach",
+        "approach_start_px": 12.0,
+        "approach_end_px": 192.0,
+    }
+    return ClipSpec(**{"left": ULTRA, "right": ULTRA, **fields, **values})
 
 
 def test_an_approach_grows_by_the_same_factor_and_keeps_its_azimuth() -> None:

@@ -14,7 +14,7 @@ import pytest
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, TABLE, Detail
 from renderer.encoding.fidelity import eye_rectangles
-from renderer.frame import FrameRenderer
+from renderer.frame import Frame, FrameRenderer
 from renderer.production.batch import render_clip
 from renderer.scene import Scene
 from renderer.studio import Studio
@@ -28,7 +28,7 @@ def scene(standard_scene: Scene) -> Scene:
     return standard_scene
 
 
-def render(gl: moderngl.Context, scene: Scene, spec: ClipSpec, azimuth_deg: float = 0.0):  # type: ignore[no-untyped-def]
+def render(gl: moderngl.Context, scene: Scene, spec: ClipSpec, azimuth_deg: float = 0.0) -> Frame:
     return FrameRenderer(gl, spec, scene=scene).render(azimuth_deg, time_s=0.5)
 
 

@@ -181,7 +181,7 @@ def site(
     if are_clips_ready:
         fill_shelf(settings.media_folder, definition, make_video)
         finish_jobs(db)
-    with serving(settings, study) as url:
+    with Serving(settings, study) as url:
         yield Site(url, db, study, settings)
     db.close()
 
@@ -197,7 +197,7 @@ def put_clips(make_video: Callable[[int], bytes]) -> Callable[[Site], None]:
     return put
 
 
-class serving:  # noqa: N801 - a context manager, used like a function
+class Serving:
     """Serve a site until the block ends. Its socket listens at once, so nobody has to wait."""
 
     def __init__(self, settings: Settings, study: studies.Study) -> None:

@@ -31,6 +31,7 @@ from renderer.eye.caustics import caustic_map
 from renderer.group import GroupRenderer
 from renderer.lod.choice import LodPolicy, LodStep
 from renderer.lod.policy import default_policy
+from renderer.scene import Scene
 
 LOW = Detail.uniform("low")
 SPEC = ClipSpec(left=LOW, right=LOW, width=640, height=360, crowd=30)
@@ -189,7 +190,7 @@ def test_every_lod_draws_the_eyes_of_whoever_comes_near(
     assert 0.001 < real.mean() < 2.0
 
 
-def test_a_crowd_of_five_keeps_painted_eyes(standard_scene) -> None:  # type: ignore[no-untyped-def]
+def test_a_crowd_of_five_keeps_painted_eyes(standard_scene: Scene) -> None:
     assert len(standard_scene.crowd.figures) == 5
     assert standard_scene.crowd._eyes is None
 

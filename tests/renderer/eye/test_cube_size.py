@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,8 +16,8 @@ from renderer.eye.cube_size import FINER, cube_px, largest_iris_px, shown_cube_p
 ULTRA, LOW = Detail.uniform("ultra"), Detail.uniform("low")
 
 
-def clip(**values: object) -> ClipSpec:
-    return ClipSpec(**{"left": ULTRA, "right": LOW, "cube_size": "auto", **values})  # type: ignore[arg-type] # any field
+def clip(**values: Any) -> ClipSpec:
+    return ClipSpec(**{"left": ULTRA, "right": LOW, "cube_size": "auto", **values})
 
 
 def mirrored_turn_rad(iris_px: float) -> float:
