@@ -28,6 +28,8 @@ from renderer.production.orders import WANTED, VersionMismatchError, fill_order,
 from renderer.sources import code_version
 
 MAX_ATTEMPTS: Final = 3  # a clip whose process dies as often is given up: it is the reason
+# Python does not wake from a wait for a signal that came just before it fell asleep: look often.
+LOOK_UP_S: Final = 1.0
 
 
 class BatchError(RuntimeError):
@@ -95,7 +97,8 @@ class _Batch:
             for spec in specs:
                 self._order(spec)
             while self._out:
-                for future in wait(self._out, return_when=FIRST_COMPLETED).done:
+                back = wait(self._out, timeout=LOOK_UP_S, return_when=FIRST_COMPLETED).done
+                for future in back:
                     self._take(future, self._out.pop(future))
         finally:
             for future in self._out:

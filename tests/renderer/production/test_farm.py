@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import _thread
 import hashlib
 import socket
+import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
@@ -70,6 +72,21 @@ def test_every_clip_is_rendered_once_and_kept_whole(
     for record in records:
         data = (tmp_path / "clips" / record.file).read_bytes()
         assert hashlib.sha256(data).hexdigest() == record.file_sha256
+
+
+class Asleep(Executor):
+    """Never comes back; as the batch falls asleep, a signal comes that wakes nobody."""
+
+    def submit(self, *_: Any, **__: Any) -> Future[Any]:
+        timer = threading.Timer(0.3, _thread.interrupt_main)
+        timer.daemon = True
+        timer.start()
+        return Future()
+
+
+def test_ctrl_c_is_heard_even_by_a_batch_that_sleeps(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        render_on(Asleep(), seeded(1), tmp_path / "clips")
 
 
 def test_a_killed_process_costs_only_its_clip(fake: ModuleType, tmp_path: Path) -> None:
