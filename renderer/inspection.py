@@ -9,13 +9,13 @@ from __future__ import annotations
 import json
 import time
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import View, iris_px, look_at, perspective, views
+from renderer.camera import IRIS_PX, View, iris_px, look_at, perspective, views
 from renderer.clip import ClipSpec
 from renderer.context import is_software
 from renderer.detail import LEVELS, Detail
@@ -76,7 +76,7 @@ class Inspector:
 
     def shot(self, spec: ClipSpec, viewpoint: Viewpoint) -> Shot:
         """Draw the eyes of a clip from a viewpoint."""
-        renderer = self._renderer(spec, viewpoint.eyes)
+        renderer = self._renderer(at_least_as_sharp(spec, viewpoint.distance_px), viewpoint.eyes)
         renderer.wireframe = viewpoint.wireframe
         shown = views(
             spec,
@@ -88,10 +88,18 @@ class Inspector:
         return self._draw(renderer, shown, viewpoint)
 
     def overhead(self, spec: ClipSpec, viewpoint: Viewpoint) -> Shot:
-        """Draw the whole scene from above, everybody in it, at the viewpoint's time."""
+        """Draw the whole scene from above, everybody in it, at the viewpoint's time.
+
+        Clips leave out the walker and the waver, who are there for the eyes to mirror.
+        """
         renderer = self._renderer(spec, BOTH)
         renderer.wireframe = False
-        return self._draw(renderer, (overhead_view(spec),), viewpoint)
+        crowd = renderer.scene.crowd
+        crowd.shows_everybody = True
+        try:
+            return self._draw(renderer, (overhead_view(spec),), viewpoint)
+        finally:
+            crowd.shows_everybody = False
 
     def close(self) -> None:
         """Give the context back."""
@@ -126,6 +134,17 @@ class Inspector:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(key)
         return self._kept[key]
+
+
+def at_least_as_sharp(spec: ClipSpec, distance_px: float) -> ClipSpec:
+    """Return a clip whose cubes are large enough from a viewpoint.
+
+    "auto" cubes are made for the clip's own distance and blur nearer than that: they give way to
+    those of the LoD's own size.
+    """
+    if spec.cube_size == "auto" and distance_px > IRIS_PX[spec.distance]:
+        return replace(spec, cube_size="table")
+    return spec
 
 
 def _named(shares: Shares) -> str:

@@ -164,6 +164,7 @@ function nextDistance() {
 
 function togglePlay() {
   playing = playing === null ? performance.now() - look.time * 1000 : null;
+  if (playing === null) void above(); // where everybody has come to
 }
 
 const KEYS = {

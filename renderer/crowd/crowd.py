@@ -54,6 +54,7 @@ class Crowd:
         has_eyes = static_cube is not None and is_large
         self.figures = build_figures(cast, is_awake=has_eyes)
         self.eyes_drawn: list[DrawnEye] = []  # in the last picture
+        self.shows_everybody = False  # also those whom only eyes are to see
         self._troupe = Troupe(self.figures)
         self._time_s: float | None = None
         self._bones: Floats = np.zeros((0, 0, 4, 4))
@@ -127,7 +128,7 @@ class Crowd:
         return [
             number
             for number, (centres, reach) in enumerate(self.bounds_mm())
-            if self.figures[number].member.is_shown
+            if (self.shows_everybody or self.figures[number].member.is_shown)
             and in_view(centres, reach, world_to_clip=world_to_clip).any()
         ]
 

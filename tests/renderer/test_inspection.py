@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,9 +12,10 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.context import identify
+from renderer.crowd.stage import FRONT, STAGE
 from renderer.detail import Detail
 from renderer.frame import FrameRenderer
-from renderer.inspection import Inspector, Viewpoint, on_picture, overhead_view
+from renderer.inspection import Inspector, Viewpoint, at_least_as_sharp, on_picture, overhead_view
 from renderer.scene import Scene
 
 LOW = Detail.uniform("low")
@@ -78,3 +80,26 @@ def test_the_scene_from_above_shows_the_person_where_it_says(inspector: Inspecto
     person = seen.pixels[row - 1 : row + 2, column - 1 : column + 2].reshape(-1, 3).mean(axis=0)
     assert np.abs(person - grass).max() > 25.0
     assert on_picture(view, 2.0 * view.position_mm) is None
+
+
+def test_the_scene_from_above_shows_those_whom_only_the_eyes_see(inspector: Inspector) -> None:
+    alone, together = (replace(SPEC, crowd=crowd) for crowd in (0, 5))
+    view = overhead_view(SPEC)
+    amid = Viewpoint(time_s=FRONT.centre_s)  # the walker passes the face
+    empty, seen = (inspector.overhead(spec, amid).pixels for spec in (alone, together))
+    changed = np.abs(seen.astype(int) - empty).max(axis=-1) > 40
+    for member in STAGE[:2]:  # the walker and the waver
+        x, z = member.place_mm(amid.time_s)
+        place = on_picture(view, (x, -300.0, z))
+        assert place is not None
+        row, column = int(place[1] * SPEC.height), int(place[0] * SPEC.width)
+        assert changed[row - 2 : row + 3, column - 2 : column + 3].mean() > 0.6, member.action
+    before, after = (inspector.shot(spec, amid).pixels for spec in (alone, together))
+    assert np.abs(after.astype(int) - before).max(axis=-1).mean() < 5.0  # a clip still hides them
+
+
+def test_cubes_of_the_clips_distance_give_way_to_larger_ones_nearer_by() -> None:
+    auto = replace(SPEC, cube_size="auto")
+    assert at_least_as_sharp(auto, 160.0) is auto
+    assert at_least_as_sharp(auto, 161.0) == replace(auto, cube_size="table")
+    assert at_least_as_sharp(SPEC, 1000.0) is SPEC
