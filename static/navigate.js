@@ -42,6 +42,9 @@ export async function showPage(answer, start) {
   document.title = page.title;
   document.querySelector("header").replaceWith(page.querySelector("header"));
   document.querySelector("main").replaceWith(page.querySelector("main"));
+  document.getElementById("texts").replaceWith(page.getElementById("texts"));
+  const { lang, dir } = page.documentElement;
+  Object.assign(document.documentElement, { lang, dir });
   for (const name of ["session", "csrf"]) {
     if (page.body.dataset[name] === undefined) delete document.body.dataset[name];
     else document.body.dataset[name] = page.body.dataset[name];

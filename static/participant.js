@@ -5,6 +5,7 @@ import { ClipStore } from "./preload.js";
 import { startAbout } from "./about.js";
 import { startNext, startStop } from "./leaving.js";
 import { startPreparing } from "./preparing.js";
+import { text } from "./texts.js";
 import { startTrial } from "./trial.js";
 
 const PAGES = {
@@ -49,9 +50,9 @@ function showSaved({ waiting, failed }) {
   if (line.dataset.state === state) return;
   line.dataset.state = state;
   line.querySelector("[role=status]").textContent = {
-    saved: "Saved",
-    saving: "Saving…",
-    waiting: "Not yet saved – kept in this browser, trying again",
+    saved: text("all.saved"),
+    saving: text("all.saving"),
+    waiting: text("all.not_saved"),
   }[state];
 }
 

@@ -2,6 +2,7 @@
 
 import { fetchPatiently, submitPatiently } from "./navigate.js";
 import { enterFullscreen, screenFacts } from "./screen.js";
+import { text } from "./texts.js";
 
 const POLL_MS = 2000;
 
@@ -65,7 +66,7 @@ export function startPreparing(main, { clips, start }) {
     clips.onProgress = () => {
       const share = Math.min(1, clips.bytesOf(wanted) / total);
       meter.value = share;
-      percent.textContent = `${Math.floor(100 * share)} %`;
+      percent.textContent = text("preparing.percent", { percent: Math.floor(100 * share) });
     };
     try {
       await Promise.all(wanted.map((clip) => clips.load(clip)));

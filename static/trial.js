@@ -3,6 +3,7 @@
 import { submitPatiently } from "./navigate.js";
 import { Player } from "./player.js";
 import { Questionnaire } from "./questionnaire.js";
+import { text } from "./texts.js";
 
 /** Start the page; returns the function that ends it. */
 export function startTrial(main, { outbox, clips, start }) {
@@ -104,8 +105,9 @@ export function startTrial(main, { outbox, clips, start }) {
     if (open.length && !mayStayOpen) {
       mayStayOpen = true;
       note.hidden = false;
-      note.querySelector("[data-count]").textContent =
-        open.length === 1 ? "One question is" : `${open.length} questions are`;
+      note.querySelector("[data-count]").textContent = text("trial.open_questions", {
+        count: open.length,
+      });
       note.focus();
       return;
     }

@@ -35,9 +35,10 @@ STIMULI = set(PURE_RENDERER)
 ENTRY_POINT = ("study.cli", "study.commands")
 # The rooms of study, each with the rooms it may import from.
 ROOMS = {
-    "study.design": {"study.design"},
+    "study.texts": {"study.texts"},
+    "study.design": {"study.design", "study.texts"},
     "study.data": {"study.data", "study.design"},
-    "study.site": {"study.site", "study.data", "study.design", "study.settings"},
+    "study.site": {"study.site", "study.data", "study.design", "study.settings", "study.texts"},
     "study.inspection": {"study.inspection", "study.site.headers", "study.site.resources"},
 }
 TOP = {

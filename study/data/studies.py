@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
@@ -12,6 +12,7 @@ from study.data.database import Database
 from study.data.refusals import StudyConflictError
 from study.data.schema import ParticipantRow, StudyRow
 from study.design.definition import StudyDefinition, parse_definition
+from study.design.translations import in_language, languages_of
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,16 @@ class Study:
     version: str
     title: str
     definition: StudyDefinition
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """The languages that the study's words are written in, its own first."""
+        return languages_of(self.definition)
+
+    def spoken(self, language: str) -> Study:
+        """Return the study with the words of one of its languages; of its own for any other."""
+        definition = in_language(self.definition, language)
+        return replace(self, title=definition.title, definition=definition)
 
 
 def register(db: Database, definition: StudyDefinition) -> Study:

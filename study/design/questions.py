@@ -6,13 +6,14 @@ analysis know; answers to any other id are exported beside them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
 from study.design.parts import Flag, Name, Part, Text, Whole
+from study.design.reasons import Reason, UnfitError
 
 Value = int | float | str
 MAX_TEXT_CHARS: Final = 10_000
@@ -100,11 +101,15 @@ STANDARD: Final[Mapping[str, Standard]] = {
 
 
 class AnswerError(ValueError):
-    """Answers that cannot be stored; ``faults`` holds question id -> sentence for its asker."""
+    """Answers that cannot be stored; ``faults`` holds question id -> why."""
 
-    def __init__(self, faults: Mapping[str, str]) -> None:
+    def __init__(self, faults: Mapping[str, Reason]) -> None:
         self.faults = dict(faults)
         super().__init__("; ".join(f"{name}: {fault}" for name, fault in faults.items()))
+
+    def said(self, text: Callable[..., str]) -> dict[str, str]:
+        """Return question id -> sentence; ``text`` is that of a catalogue."""
+        return {name: text(why.key, **why.values) for name, why in self.faults.items()}
 
 
 def accepted_values(question: Question) -> tuple[Value, ...]:
@@ -127,17 +132,17 @@ def read_answers(
     Raises AnswerError with every fault at once.
     """
     by_id = {question.id: question for question in questions}
-    faults = dict.fromkeys(given.keys() - by_id, "This question is not part of the study.")
+    faults = dict.fromkeys(given.keys() - by_id, Reason("answer.unknown"))
     answers: dict[str, Value | None] = {}
     for name, question in by_id.items():
         if name in given:
             try:
                 answers[name] = read_answer(question, given[name])
-            except ValueError as error:
-                faults[name] = str(error)
+            except UnfitError as error:
+                faults[name] = error.reason
     if is_final:
         faults |= {
-            question.id: "Please answer this question to go on."
+            question.id: Reason("answer.required")
             for question in questions
             if question.is_required
             and question.id not in faults
@@ -156,7 +161,7 @@ def is_shown(question: Question, answers: Mapping[str, Value | None]) -> bool:
 
 
 def read_answer(question: Question, given: object) -> Value | None:
-    """Read one answer; None when skipped. Raises ValueError with a sentence for the participant."""
+    """Read one answer; None when skipped. Raises UnfitError with the reason."""
     if given is None or (isinstance(given, str) and not given.strip()):
         return None
     text = str(given).strip()
@@ -167,7 +172,7 @@ def read_answer(question: Question, given: object) -> Value | None:
     for value in accepted_values(question):
         if text == str(value):
             return value
-    raise ValueError("Please choose one of the answers shown.")
+    raise UnfitError(Reason("answer.choose"))
 
 
 def _read_text(question: TextQuestion, text: str) -> str | None:
@@ -175,19 +180,18 @@ def _read_text(question: TextQuestion, text: str) -> str | None:
     cleaned = text.replace("\x00", "").replace("\r\n", "\n").strip()
     cleaned = cleaned.encode("utf-8", "replace").decode("utf-8")
     if len(cleaned) > question.max_chars:
-        raise ValueError(
-            f"Please shorten your text to {question.max_chars} characters; "
-            f"it has {len(cleaned)} now."
-        )
+        limits = {"most": question.max_chars, "count": len(cleaned)}
+        raise UnfitError(Reason("answer.too_long", limits))
     return cleaned or None  # a text of nothing but such characters is a skipped question
 
 
 def _read_number(question: NumberQuestion, text: str) -> int:
-    accepted = f"Please enter a whole number from {question.minimum} to {question.maximum}."
+    limits = {"lowest": question.minimum, "highest": question.maximum}
+    accepted = UnfitError(Reason("answer.whole_number", limits))
     try:
         value = int(text)
     except ValueError:
-        raise ValueError(accepted) from None
+        raise accepted from None
     if not question.minimum <= value <= question.maximum:
-        raise ValueError(accepted)
+        raise accepted
     return value

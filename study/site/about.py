@@ -23,7 +23,7 @@ DRAFTED: Final = "drafted"
 def about(here: Here, visitor: AVisitor) -> Response:
     """Ask about the participant."""
     step_of(here, visitor, "about")
-    return _about_page(here, visitor, _drafts(here, visitor), {})
+    return _about_page(here, visitor, _drafts(here, visitor))
 
 
 def _drafts(here: Here, visitor: Visitor) -> dict[str, object]:
@@ -36,17 +36,18 @@ def _drafts(here: Here, visitor: Visitor) -> dict[str, object]:
 
 
 def _about_page(
-    here: Here, visitor: Visitor, answers: dict[str, object], faults: dict[str, str]
+    here: Here, visitor: Visitor, answers: dict[str, object], error: AnswerError | None = None
 ) -> Response:
     definition = visitor.study.definition
+    frame = shared(visitor.study, visitor, "about")
     return here.page(
         "participant/about.html",
-        status=422 if faults else 200,
-        **shared(visitor.study, visitor, "about"),
+        status=422 if error else 200,
+        **frame,
         about=definition.about_page,
         rows=question_rows(definition.about),
         answers=answers,
-        faults=faults,
+        faults=error.said(frame["text"]) if error else {},
         key=secrets.token_hex(16),
     )
 
@@ -60,7 +61,7 @@ def store_about(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response
             here.db, visitor.participant, answers, key=first(fields, "key") or "about"
         )
     except AnswerError as error:
-        return _about_page(here, visitor, answers, error.faults)
+        return _about_page(here, visitor, answers, error)
     return to_current(here, visitor)
 
 

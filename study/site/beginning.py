@@ -23,8 +23,10 @@ from study.site.access import (
 from study.site.browsers import browser_family
 from study.site.forms import first, read_form
 from study.site.frame import shared
+from study.site.language import Wishes, language_of, remember_language
 from study.site.place import Here
 from study.site.signatures import SIMULATION_HEADER, is_simulation_token
+from study.texts import catalogue
 
 router = APIRouter(default_response_class=HTMLResponse)
 
@@ -39,43 +41,46 @@ def minutes_of(definition: StudyDefinition) -> int:
 
 
 @router.get("/")
-def landing(here: Here, visitor: MaybeVisitor) -> Response:
+def landing(here: Here, visitor: MaybeVisitor, wishes: Wishes) -> Response:
     """Say in plain words what this is."""
-    study = visitor.study if visitor else here.study()
-    return here.page(
+    study = visitor.study if visitor else here.study(wishes)
+    page = here.page(
         "participant/landing.html",
-        **shared(study, visitor, "landing"),
+        **shared(study, visitor, "landing", wishes=wishes),
         is_under_way=visitor is not None and not visitor.is_over,
         is_over=visitor is not None and visitor.is_over,
         clip_count=len(study.definition.every_clip),
         minutes=minutes_of(study.definition),
     )
+    remember_language(page, language_of(study, wishes))
+    return page
 
 
 @router.get("/consent")
-def consent(here: Here, visitor: MaybeVisitor) -> Response:
+def consent(here: Here, visitor: MaybeVisitor, wishes: Wishes) -> Response:
     """Show what a participant agrees to."""
     if visitor is not None:
         return to_current(here, visitor)
-    return _consent_page(here)
+    return _consent_page(here, wishes)
 
 
-def _consent_page(here: Here, *, fault: str = "") -> Response:
-    study = here.study()
-    words = study.definition.consent
+def _consent_page(here: Here, wishes: tuple[str, ...], *, fault: str = "") -> Response:
+    """Show the consent; ``fault`` is the key of what to say about a form that was sent."""
+    study = here.study(wishes)
+    frame = shared(study, None, "consent", wishes=wishes)
     return here.page(
         "participant/consent.html",
         status=422 if fault else 200,
-        **shared(study, None, "consent"),
-        consent=words,
-        statements=statements_of(study),
-        fault=fault,
+        **frame,
+        consent=study.definition.consent,
+        statements=statements_of(study, language_of(study, wishes)),
+        fault=frame["text"](fault) if fault else "",
     )
 
 
-def statements_of(study: Study) -> tuple[str, ...]:
+def statements_of(study: Study, language: str) -> tuple[str, ...]:
     """Return the sentences to tick; at least one, because agreement has to be explicit."""
-    return study.definition.consent.statements or ("I have read this page and I agree.",)
+    return study.definition.consent.statements or (catalogue(language).text("consent.statement"),)
 
 
 @router.post("/consent")
@@ -83,29 +88,32 @@ def agree(
     request: Request,
     here: Here,
     visitor: MaybeVisitor,
+    wishes: Wishes,
     fields: Annotated[dict[str, list[str]], Depends(read_form)],
 ) -> Response:
     """Enrol a participant who agrees to everything in the version that they read."""
     if visitor is not None:  # a double click, or Back and send again
         return to_current(here, visitor)
-    study = here.study()
-    words = study.definition.consent
-    if first(fields, "version") != words.version:
-        return _consent_page(here, fault="This text has changed. Please read it once more.")
-    if len(set(fields.get("agree", ()))) < len(statements_of(study)):
-        return _consent_page(here, fault="To take part, please tick every sentence.")
+    study = here.study(wishes)
+    language = language_of(study, wishes)
+    statements = statements_of(study, language)
+    if first(fields, "version") != study.definition.consent.version:
+        return _consent_page(here, wishes, fault="consent.changed")
+    if len(set(fields.get("agree", ()))) < len(statements):
+        return _consent_page(here, wishes, fault="consent.tick_all")
     with here.db.writing():
         enrolment = participants.enrol(
             here.db,
             study,
             simulated=_is_simulated(request, here),
+            language=language,
             device={"user_agent_family": browser_family(request.headers.get("user-agent", ""))},
         )
         progress.give_consent(
             here.db,
             enrolment.participant,
             key="consent",
-            payload={"statements": list(statements_of(study))},
+            payload={"statements": list(statements)},
         )
     answer = redirect("/continue")
     remember(request, answer, PARTICIPANT_COOKIE, enrolment.token, REMEMBER_S)
@@ -121,12 +129,13 @@ def _is_simulated(request: Request, here: Here) -> bool:
 
 
 @router.get("/declined")
-def declined(here: Here) -> Response:
+def declined(here: Here, wishes: Wishes) -> Response:
     """Say goodbye to someone who does not want to take part; nothing was stored."""
+    frame = shared(here.study(wishes), None, "ended", wishes=wishes)
     return here.page(
         "participant/ended.html",
-        **shared(here.study(), None, "ended"),
-        heading="Thank you for your interest",
-        lines=["You are not taking part, and nothing about you was stored."],
+        **frame,
+        heading=frame["text"]("declined.heading"),
+        lines=[frame["text"]("declined.nothing_stored")],
         offer="start",
     )

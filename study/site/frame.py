@@ -1,4 +1,4 @@
-"""What every page of a participant shows around its own content."""
+"""What every page of a participant shows around its own content, and in which language."""
 
 from __future__ import annotations
 
@@ -6,15 +6,28 @@ from typing import Any
 
 from study.data.studies import Study
 from study.site.access import Visitor
+from study.site.language import language_of
+from study.texts import catalogue, tongue
 
 
-def shared(study: Study, visitor: Visitor | None, page: str) -> dict[str, Any]:
-    """Return what every page of a participant shows."""
+def shared(
+    study: Study, visitor: Visitor | None, page: str, *, wishes: tuple[str, ...] = ()
+) -> dict[str, Any]:
+    """Return what every page of a participant shows.
+
+    ``text`` is the catalogue in the participant's language, for a visitor who takes part; others
+    get one of their ``wishes``. ``page`` names the page and the script that serves it.
+    """
+    language = language_of(study, (visitor.participant.language,) if visitor else wishes)
+    words = catalogue(language)
     return {
         "page": page,
         "visitor": visitor,
         "study_title": study.title,
-        "language": study.definition.language,
+        "language": language,
+        "direction": tongue(language).direction,
+        "text": words.markup,
+        "script_texts": words.of_scripts(page),
         "contact": study.definition.contact,
         "resume_url": visitor.resume_url if visitor else "",
     }

@@ -11,13 +11,22 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Header
 from pydantic import BaseModel, ConfigDict, Field
 
-from study.data import answers, events, views
+from study.data import answers, events, trials, views
+from study.design.certificate import judge
 from study.design.questions import AnswerError, read_answers
 from study.site.about import DRAFTED
 from study.site.access import AVisitor, Visitor, check_csrf
+from study.site.language import language_of
+from study.site.media import to_expect
 from study.site.place import Here
+from study.texts import catalogue
 
 router = APIRouter()
+
+
+# Plain values, and intervals as pairs of times in ms.
+Interval = tuple[float, float]
+Fact = bool | int | float | Annotated[str, Field(max_length=300)] | list[Interval] | None
 
 
 class Entry(BaseModel):
@@ -42,7 +51,7 @@ class PlayEntry(Entry):
 
     kind: Literal["play"]
     position: int
-    play: dict[str, bool | int | float | str | None]
+    play: Annotated[dict[str, Fact], Field(max_length=100)]
 
 
 class ProblemEntry(Entry):
@@ -63,17 +72,15 @@ def report(
     entry: AnyEntry,
     x_csrf_token: Annotated[str, Header()] = "",
 ) -> dict[str, Any]:
-    """Store one entry, and say so only once it is stored.
+    """Store one entry, and say so only once it is stored: by the entry's own key.
 
     An answer that cannot be stored is refused kindly: the form says why when it is sent.
     """
     check_csrf(here.secret, visitor.token, x_csrf_token)
     if isinstance(entry, AnswerEntry):
-        return _answer(here, visitor, entry)
-    if isinstance(entry, PlayEntry):
-        stored = views.record(
-            here.db, visitor.participant, entry.position, key=entry.key, play=entry.play
-        )
+        told = _answer(here, visitor, entry)
+    elif isinstance(entry, PlayEntry):
+        told = _play(here, visitor, entry)
     else:
         stored = events.record(
             here.db,
@@ -83,7 +90,23 @@ def report(
             payload={"code": entry.code},
             position=entry.position,
         )
-    return {"ok": True, "new": stored.new}
+        told = {"ok": True, "new": stored.new}
+    return {**told, "key": entry.key}
+
+
+def _play(here: Here, visitor: Visitor, entry: PlayEntry) -> dict[str, Any]:
+    """Store a play beside what the shelf knows of its clip, and say whether it counts."""
+    clip_id = trials.clip_id_at(here.db, visitor.participant, entry.position)
+    record = None if clip_id is None else here.clips.record(clip_id)
+    play = entry.play if record is None else {**entry.play, **to_expect(record)}
+    stored = views.record(here.db, visitor.participant, entry.position, key=entry.key, play=play)
+    verdict = judge(play, visitor.study.definition.certificate)
+    return {
+        "ok": True,
+        "new": stored.new,
+        "certified": verdict.certified,
+        "reasons": verdict.reasons,
+    }
 
 
 def _answer(here: Here, visitor: Visitor, entry: AnswerEntry) -> dict[str, Any]:
@@ -98,5 +121,6 @@ def _answer(here: Here, visitor: Visitor, entry: AnswerEntry) -> dict[str, Any]:
             return {"ok": True, "new": stored.new}
         answer = answers.store(here.db, visitor.participant, entry.position, given, key=entry.key)
     except AnswerError as error:
-        return {"ok": False, "faults": error.faults}
+        words = catalogue(language_of(visitor.study, (visitor.participant.language,)))
+        return {"ok": False, "faults": error.said(words.text)}
     return {"ok": True, "new": answer.new, "is_over": answer.trial_complete}

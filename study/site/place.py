@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,6 +17,7 @@ from study.data.studies import Study
 from study.settings import Settings
 from study.site.media import ClipShelf
 from study.site.resources import folder_version, resource_folder
+from study.texts import first_spoken
 
 
 class NoStudyError(LookupError):
@@ -37,8 +39,13 @@ class Place:
         self.static_version = folder_version(self.static_folder)
         self.pages = _environment(self.static_version)
 
-    def study(self) -> Study:
-        """Return the study that newcomers take part in."""
+    def study(self, wishes: Sequence[str] = ()) -> Study:
+        """Return the study that newcomers take part in, in the language that serves them best."""
+        found = self._study()
+        language = first_spoken(wishes, found.languages)
+        return found.spoken(language or found.definition.language)
+
+    def _study(self) -> Study:
         if self.study_id is not None:
             return studies.by_id(self.db, self.study_id)
         found = studies.latest(self.db)

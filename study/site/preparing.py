@@ -15,14 +15,13 @@ from study.design.parts import Size
 from study.site.access import AVisitor, Visitor, VisitorsForm, redirect, step_of, to_current
 from study.site.forms import first
 from study.site.frame import shared
+from study.site.language import language_of
 from study.site.media import to_preload
 from study.site.place import Here
+from study.texts import catalogue
 
 router = APIRouter()
-STUCK: Final = (
-    "Something holds the clips up. The researcher can see it; please come back later. "
-    "Code: CLIPS-STUCK"
-)
+STUCK: Final = "CLIPS-STUCK"
 Pixels = Annotated[int, Query(ge=1, le=100_000)]
 
 
@@ -53,7 +52,7 @@ def state(
         "fits": ready.fits,
         "is_ready": False,
         "progress": round(ready.progress, 4),
-        "wait": STUCK if ready.is_stuck else _wait(here, visitor, screen),
+        "wait": _wait(here, visitor, screen, is_stuck=ready.is_stuck),
         "clips": [],
     }
     if not ready.is_ready:
@@ -74,15 +73,18 @@ def _clips(here: Here, participant: Participant) -> list[dict[str, Any]] | None:
     return [to_preload(record) for record in records.values() if record is not None]
 
 
-def _wait(here: Here, visitor: Visitor, screen: Screen) -> str:
+def _wait(here: Here, visitor: Visitor, screen: Screen, *, is_stuck: bool) -> str:
     """Say in calm words how long the nearest complete set of clips takes."""
     definition = visitor.study.definition
+    words = catalogue(language_of(visitor.study, (visitor.participant.language,)))
+    if is_stuck:
+        return words.text("preparing.stuck", code=STUCK)
     nearest = _nearest(here, visitor, arms.fitting_sizes(definition, screen))
     if nearest is None or nearest.left_s is None:
-        return "We cannot say yet how long it takes."
+        return words.text("preparing.time_unknown")
     if nearest.left_s < 60:
-        return "Less than a minute is left."
-    return f"About {math.ceil(nearest.left_s / 60)} minutes are left."
+        return words.text("preparing.seconds_left")
+    return words.text("preparing.minutes_left", count=math.ceil(nearest.left_s / 60))
 
 
 def _nearest(here: Here, visitor: Visitor, sizes: list[Size]) -> jobs.Summary | None:

@@ -3,95 +3,77 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from fastapi import Request
 from fastapi.responses import HTMLResponse
 
 from study.design.texts import Contact
+from study.site.frame import shared
 from study.site.headers import HEADERS
+from study.site.language import wishes_of
 from study.site.place import NoStudyError, Place
+from study.texts import catalogue, first_spoken, languages, tongue
 
 
 @dataclass(frozen=True)
-class Words:
-    """What a problem page says."""
+class Problem:
+    """A page's texts, ``problem.NAME.*`` of the catalogue, and where its button leads."""
 
-    heading: str
-    sentence: str
-    step: str = ""
-    link: str = "Go on"
+    name: str
+    button: str = "go_on"
     href: str = "/continue"
 
 
-WORDS: Final = {
-    "FORM-OLD": Words(
-        "Please send that again",
-        "The page had become too old to be sent.",
-        "Go back to where you are and send it once more. Your earlier answers are safe.",
-    ),
-    "OUT-OF-STEP": Words(
-        "This page is not next",
-        "That belongs to another part of the study.",
-        "We take you to where you are. Your answers are safe.",
-    ),
-    "NO-STUDY": Words(
-        "No study is running here yet",
-        "Please come back a little later.",
-        link="Try again",
-        href="/",
-    ),
-    "NOT-READABLE": Words(
-        "We could not read that",
-        "What your browser sent was incomplete.",
-        "Go back to where you are and try once more.",
-    ),
-    "PAGE-404": Words(
-        "There is no such page",
-        "The address may be mistyped or no longer in use.",
-        link="To the first page",
-        href="/",
-    ),
-    "CLIP-MISSING": Words(
-        "This clip is not ready",
-        "The clip that comes next cannot be shown at the moment. Your answers so far are safe.",
-        "Please wait a minute and try again. You may also come back later; your place is kept.",
-        link="Try again",
-    ),
+PROBLEMS: Final = {
+    "FORM-OLD": Problem("form_old"),
+    "OUT-OF-STEP": Problem("out_of_step"),
+    "NO-STUDY": Problem("no_study", "try_again", "/"),
+    "NOT-READABLE": Problem("not_readable"),
+    "PAGE-404": Problem("page_404", "first_page", "/"),
+    "CLIP-MISSING": Problem("clip_missing", "try_again"),
 }
-REFUSED: Final = Words(
-    "That did not work",
-    "Your browser sent something that this page does not take. Your answers so far are safe.",
-    "Go back to where you are and try once more.",
-)
-OUR_FAULT: Final = Words(
-    "Something went wrong",
-    "That was our fault, not yours. Your answers so far are safe.",
-    "Please try again in a moment.",
-    link="Try again",
-)
+REFUSED: Final = Problem("refused")
+OUR_FAULT: Final = Problem("our_fault", "try_again")
 
 
 def problem_page(request: Request, *, status: int, code: str) -> HTMLResponse:
     """Return the calm page for a code."""
     place: Place = request.app.state.place
-    words = WORDS.get(code.partition(" ")[0], OUR_FAULT if status >= 500 else REFUSED)
-    try:
-        definition = place.study().definition
-        title, language, contact = definition.title, definition.language, definition.contact
-    except NoStudyError:
-        title, language, contact = "Ocularist", "en", Contact(name="the researcher who invited you")
+    problem = PROBLEMS.get(code.partition(" ")[0], OUR_FAULT if status >= 500 else REFUSED)
+    frame = _frame(request, place)
+    text = frame["text"]
     page = place.page(
         "participant/problem.html",
         status=status,
-        page="problem",
-        visitor=None,
-        study_title=title,
-        language=language,
-        contact=contact,
+        **frame,
         code=code,
-        words=words,
+        heading=text(f"problem.{problem.name}.heading"),
+        sentence=text(f"problem.{problem.name}.sentence"),
+        step=text(f"problem.{problem.name}.step"),
+        button=text(f"problem.{problem.button}"),
+        href=problem.href,
     )
     # An unforeseen error is answered outside of the middleware that adds these.
     page.headers.update(HEADERS)
     return page
+
+
+def _frame(request: Request, place: Place) -> dict[str, Any]:
+    """Return what stands around the page; where there is no study, in words that need none."""
+    wishes = wishes_of(request)
+    try:
+        return shared(place.study(wishes), None, "problem", wishes=wishes)
+    except NoStudyError:
+        words = catalogue(first_spoken(wishes, languages()) or languages()[0])
+    return {
+        "page": "problem",
+        "visitor": None,
+        "study_title": "Ocularist",
+        "language": words.tongue.language,
+        "direction": tongue(words.tongue.language).direction,
+        "text": words.markup,
+        "script_texts": words.of_scripts("problem"),
+        "contact": Contact(name=words.text("problem.contact")),
+        "resume_url": "",
+    }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, Response
@@ -20,6 +20,7 @@ from study.site.place import Here
 from study.site.problems import problem_page
 
 router = APIRouter(default_response_class=HTMLResponse)
+Say = Callable[..., str]
 LONGEST_MS = 24 * 3600 * 1000
 
 
@@ -40,7 +41,7 @@ def _trial_page(
     step: Step,
     *,
     given: Mapping[str, object] | None = None,
-    faults: Mapping[str, str] | None = None,
+    error: AnswerError | None = None,
     note: str = "",
 ) -> Response:
     if step.trial is None:
@@ -52,11 +53,13 @@ def _trial_page(
     definition = visitor.study.definition
     every = trials.all_trials(here.db, visitor.participant)
     is_last = found.position == every[-1].position
+    frame = shared(visitor.study, visitor, "trial")
+    text = frame["text"]
     return here.page(
         "participant/trial.html",
-        status=422 if faults or note else 200,
-        **shared(visitor.study, visitor, "trial"),
-        heading=_heading(step),
+        status=422 if error or note else 200,
+        **frame,
+        heading=_heading(step, text),
         steps=_steps(every, found),
         position=found.position,
         clip=record,
@@ -69,17 +72,18 @@ def _trial_page(
         seconds=round(record.frame_count / record.fps),
         rows=question_rows(definition.questions),
         answers={**found.answers, **(given or {})},
-        faults=faults or {},
-        note=note,
+        faults=error.said(text) if error else {},
+        note=text(note) if note else "",
         key=secrets.token_hex(16),
-        button="Finish" if is_last else "Save and go to the next clip",
+        button=text("trial.finish" if is_last else "trial.next"),
     )
 
 
-def _heading(step: Step) -> str:
-    if step.name == "practice":
-        return "Practice" if step.total == 1 else f"Practice {step.number} of {step.total}"
-    return f"Clip {step.number} of {step.total}"
+def _heading(step: Step, text: Say) -> str:
+    if step.name == "practice" and step.total == 1:
+        return text("trial.practice")
+    key = "trial.practice_number" if step.name == "practice" else "trial.clip_number"
+    return text(key, number=step.number, total=step.total)
 
 
 def _steps(every: tuple[trials.Trial, ...], current: trials.Trial) -> list[str]:
@@ -132,9 +136,9 @@ def finish(
             response_ms=_milliseconds(first(fields, "response_ms")),
         )
     except AnswerError as error:
-        return _trial_page(request, here, visitor, step, given=given, faults=error.faults)
+        return _trial_page(request, here, visitor, step, given=given, error=error)
     except NotWatchedError:
-        note = "Please watch the clip to its end first. Your answers are kept."
+        note = "trial.locked_kept"
         return _trial_page(request, here, visitor, step, given=given, note=note)
     except NotReachedError:
         return to_current(here, visitor)

@@ -13,6 +13,9 @@ from study.data.studies import Study
 from study.design.definition import parse_definition
 from study.design.questions import AnswerError
 from study.design.schedule import all_arms, schedule
+from study.texts import catalogue
+
+ENGLISH = catalogue("en").text
 
 
 def step(walk: Any) -> str:
@@ -119,7 +122,7 @@ def test_faulty_answers_about_oneself_are_not_stored(walk: Any) -> None:
     walk.consent()
     with pytest.raises(AnswerError) as caught:
         walk.about(age="7", gender="woman")
-    assert caught.value.faults == {"age": "Please enter a whole number from 18 to 99."}
+    assert caught.value.said(ENGLISH) == {"age": "Please enter a whole number from 18 to 99."}
     assert step(walk) == "about"
 
 

@@ -10,6 +10,9 @@ from hypothesis import strategies as st
 
 from study.design.definition import StudyDefinition, parse_definition
 from study.design.questions import AnswerError, TextQuestion, is_shown, read_answer, read_answers
+from study.texts import catalogue
+
+ENGLISH = catalogue("en").text
 
 
 @pytest.fixture
@@ -43,7 +46,7 @@ def test_every_faulty_answer_is_told_at_once(definition: StudyDefinition) -> Non
     given = {"noticed": "perhaps", "rating_left": "6", "what_differed": "x" * 21, "other": "1"}
     with pytest.raises(AnswerError) as caught:
         read_answers(definition.questions, given)
-    assert caught.value.faults == {
+    assert caught.value.said(ENGLISH) == {
         "noticed": "Please choose one of the answers shown.",
         "rating_left": "Please choose one of the answers shown.",
         "what_differed": "Please shorten your text to 20 characters; it has 21 now.",
@@ -55,7 +58,7 @@ def test_every_faulty_answer_is_told_at_once(definition: StudyDefinition) -> Non
 def test_a_number_outside_its_limits_is_refused(definition: StudyDefinition, text: str) -> None:
     with pytest.raises(AnswerError) as caught:
         read_answers(definition.about, {"age": text})
-    assert caught.value.faults == {"age": "Please enter a whole number from 18 to 99."}
+    assert caught.value.said(ENGLISH) == {"age": "Please enter a whole number from 18 to 99."}
 
 
 def test_a_required_question_is_asked_for_only_when_shown_and_final(raw: dict[str, Any]) -> None:
@@ -65,7 +68,7 @@ def test_a_required_question_is_asked_for_only_when_shown_and_final(raw: dict[st
     assert read_answers(questions, {"noticed": "no"}) == {"noticed": "no"}
     with pytest.raises(AnswerError) as caught:
         read_answers(questions, {"noticed": "yes"})
-    assert caught.value.faults == {"what_differed": "Please answer this question to go on."}
+    assert caught.value.said(ENGLISH) == {"what_differed": "Please answer this question to go on."}
 
 
 @given(st.text(alphabet=st.characters(codec=None), max_size=300))
