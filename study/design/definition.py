@@ -22,7 +22,10 @@ from renderer.clip import DIRECTIONS, PATHS, ClipSpec
 from renderer.detail import EFFECTS, Detail
 from renderer.lod.choice import LodPolicy
 from study.design.approach import Approach, PolicyData, policy_of
+from study.design.calibration import Calibration
 from study.design.checks import cross_faults
+from study.design.device_check import DeviceCheck
+from study.design.eyesight import Eyesight
 from study.design.faults import DefinitionError, Fault, faults_of, suggestion
 from study.design.files import find_files, without_later_keys, without_paths
 from study.design.pairings import CatchClip, Clip, Factors, LodRow, all_clips, detail_of
@@ -85,6 +88,9 @@ class StudyDefinition(Part):
     consent: Consent
     about: tuple[Question, ...] = ()
     about_page: Page
+    device_check: DeviceCheck | None = None
+    calibration: Calibration | None = None
+    eyesight: Eyesight | None = None
     instructions: Page
     questions: Annotated[tuple[Question, ...], Field(min_length=1)]
     thanks: Thanks

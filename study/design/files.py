@@ -94,6 +94,7 @@ _LATER: Final[Mapping[str, Any]] = {
     "motion": "orbit",
     "switching": None,
     "cube_size": "table",
+    **dict.fromkeys(("device_check", "calibration", "eyesight"), None),
 }
 
 
