@@ -52,18 +52,27 @@ def detail_of(lods: dict[str, LodRow], name: str) -> Detail:
 
 
 class Clip(Part):
-    """One pairing at one distance. Left and right are the viewer's."""
+    """One pairing at one distance. Left and right are the viewer's.
+
+    ``iris`` names one of the study's irises; None is that of ``[eye]``.
+    """
 
     id: Name
     distance: Distance
     left: str
     right: str
     motion: Motion = "orbit"
+    iris: str | None = None
 
     @property
     def is_catch(self) -> bool:
         """Both eyes have the same LoD: who notices a difference here measures false alarms."""
         return self.left == self.right
+
+    @property
+    def pairing(self) -> str:
+        """The clip's id without its iris: what several irises share."""
+        return self.id.removesuffix(f"-{self.iris}") if self.iris else self.id
 
 
 class CatchClip(Part):
@@ -73,20 +82,30 @@ class CatchClip(Part):
     distance: Distance
     lod: str
     motion: Motion = "orbit"
+    iris: str | None = None
 
     def clip(self) -> Clip:
         """Return the clip that shows this LoD twice."""
-        name = self.id or f"catch-{self.distance}-{self.lod}"
         return Clip(
-            id=name, distance=self.distance, left=self.lod, right=self.lod, motion=self.motion
+            id=self.id or _with_iris(f"catch-{self.distance}-{self.lod}", self.iris),
+            distance=self.distance,
+            left=self.lod,
+            right=self.lod,
+            motion=self.motion,
+            iris=self.iris,
         )
+
+
+def _with_iris(name: str, iris: str | None) -> str:
+    return name if iris is None else f"{name}-{iris}"
 
 
 class Factors(Part):
     """Every LoD of ``lods`` beside every LoD of ``against`` at every distance.
 
     ``sides``: "given" puts ``lods`` on the left, "swapped" on the right, "both" shows each pairing
-    both ways round, "alternating" changes sides from one pairing to the next.
+    both ways round, "alternating" changes sides from one pairing to the next. With ``irises``
+    every pairing is shown with each of them.
     """
 
     distances: Annotated[tuple[Distance, ...], Field(min_length=1)]
@@ -94,11 +113,12 @@ class Factors(Part):
     against: Annotated[tuple[str, ...], Field(min_length=1)]
     sides: Literal["given", "swapped", "both", "alternating"] = "both"
     motion: Motion = "orbit"
+    irises: tuple[str, ...] = ()
 
     def clips(self) -> Iterator[Clip]:
         """Generate the clips, named ``near-low-ultra``: distance, left, right.
 
-        An approach's names begin with ``approach-``.
+        An approach's names begin with ``approach-``, those of several irises end with theirs.
         """
         pairs = [
             (distance, lod, other)
@@ -110,19 +130,21 @@ class Factors(Part):
         for index, (distance, lod, other) in enumerate(pairs):
             is_odd = index % 2 == 1
             if self.sides in ("given", "both") or (self.sides == "alternating" and not is_odd):
-                yield self._pair(distance, lod, other)
+                yield from self._pair(distance, lod, other)
             if self.sides in ("swapped", "both") or (self.sides == "alternating" and is_odd):
-                yield self._pair(distance, other, lod)
+                yield from self._pair(distance, other, lod)
 
-    def _pair(self, distance: str, left: str, right: str) -> Clip:
+    def _pair(self, distance: str, left: str, right: str) -> Iterator[Clip]:
         start = "approach-" if self.motion == "approach" else ""
-        return Clip(
-            id=f"{start}{distance}-{left}-{right}",
-            distance=distance,
-            left=left,
-            right=right,
-            motion=self.motion,
-        )
+        for iris in self.irises or (None,):
+            yield Clip(
+                id=_with_iris(f"{start}{distance}-{left}-{right}", iris),
+                distance=distance,
+                left=left,
+                right=right,
+                motion=self.motion,
+                iris=iris,
+            )
 
 
 def all_clips(
