@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import re
-import shutil
 import socket
 import threading
 from collections.abc import Callable, Iterator
@@ -17,12 +16,14 @@ import numpy as np
 import pytest
 import uvicorn
 from imageio_ffmpeg import write_frames
+from sqlalchemy import select
 
 from renderer.clip import ClipSpec
 from renderer.manifest import ClipRecord, Manifest, write_manifest
 from renderer.sources import code_version
 from study.data import export, jobs, participants, researchers, studies
 from study.data.database import Database, open_database
+from study.data.schema import ResearcherRow
 from study.design.definition import StudyDefinition, parse_definition, read_definition
 from study.settings import Settings
 from study.site.app import create_app
@@ -151,31 +152,41 @@ def are_clips_ready() -> bool:
 
 
 @pytest.fixture(scope="session")
-def fresh_database(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An empty database with one researcher, made once: tables and password hashes take time."""
-    path = tmp_path_factory.mktemp("database") / "study.sqlite3"
-    db = open_database(str(path))
+def password_hash(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The hash of PASSWORD, made once: hashing takes time on purpose."""
+    db = open_database(str(tmp_path_factory.mktemp("hash") / "study.sqlite3"))
     researchers.add(db, "ada", PASSWORD)
+    with db.reading() as session:
+        found = session.scalars(select(ResearcherRow.password_hash)).one()
     db.close()
-    return path
+    return found
+
+
+def add_ada(db: Database, password_hash: str) -> None:
+    """Add the researcher ada, whose password is PASSWORD."""
+    with db.writing() as session:
+        session.add(ResearcherRow(name="ada", password_hash=password_hash, created_at=db.now()))
+
+
+@pytest.fixture
+def settings(tmp_path: Path, database_url: str) -> Settings:
+    """Where the site of the test keeps everything."""
+    return Settings(
+        data_folder=tmp_path, database_url=database_url, media_folder=tmp_path / "clips"
+    )
 
 
 @pytest.fixture
 def site(
-    tmp_path: Path,
-    fresh_database: Path,
+    settings: Settings,
+    password_hash: str,
     definition: StudyDefinition,
     make_video: Callable[[int], bytes],
     are_clips_ready: bool,
 ) -> Iterator[Site]:
     """Run the site in a thread, on a port of its own."""
-    settings = Settings(
-        data_folder=tmp_path,
-        database_url=f"sqlite:///{tmp_path}/study.sqlite3",
-        media_folder=tmp_path / "clips",
-    )
-    shutil.copy(fresh_database, tmp_path / "study.sqlite3")
     db = open_database(settings.database_url)
+    add_ada(db, password_hash)
     study = studies.register(db, definition)
     jobs.enqueue(db, definition.wanted_specs())
     if are_clips_ready:

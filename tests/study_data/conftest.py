@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -43,18 +42,9 @@ def clock() -> HandClock:
     return HandClock()
 
 
-@pytest.fixture(scope="session")
-def empty_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make the tables once; every test copies the file."""
-    path = tmp_path_factory.mktemp("empty") / "study.sqlite3"
-    open_database(str(path)).close()
-    return path
-
-
 @pytest.fixture
-def db(tmp_path: Path, clock: HandClock, empty_file: Path) -> Iterator[Database]:
-    shutil.copy(empty_file, tmp_path / "study.sqlite3")
-    database = open_database(f"sqlite:///{tmp_path}/study.sqlite3", clock=clock)
+def db(database_url: str, clock: HandClock) -> Iterator[Database]:
+    database = open_database(database_url, clock=clock)
     yield database
     database.close()
 

@@ -10,11 +10,14 @@ import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import text
-from sqlalchemy.dialects import postgresql
-from sqlalchemy.schema import CreateTable
 
+from study.data import database as database_module
 from study.data.database import Database, DatabaseError, open_database
 from study.data.schema import Base, StudyRow
+
+VERSIONS = Path(database_module.__file__).parent / "migrations" / "versions"
+ON_SQLITE = pytest.mark.parametrize("database_kind", ["sqlite"])
+ON_POSTGRESQL = pytest.mark.parametrize("database_kind", ["postgresql"])
 
 
 def row(db: Database, key: str) -> StudyRow:
@@ -32,17 +35,20 @@ def test_migrations_make_exactly_the_tables_of_the_schema(db: Database) -> None:
     with db.engine.connect() as connection:
         context = MigrationContext.configure(connection, opts={"compare_type": True})
         assert compare_metadata(context, Base.metadata) == []
-        assert context.get_current_revision() == "0001"
+        assert context.get_current_revision() == max(
+            path.name[:4] for path in VERSIONS.glob("[0-9]*.py")
+        )
 
 
-def test_opening_again_keeps_what_is_there(db: Database, tmp_path: Path) -> None:
+def test_opening_again_keeps_what_is_there(db: Database, database_url: str) -> None:
     with db.writing() as session:
         session.add(row(db, "kept"))
-    again = open_database(str(tmp_path / "study.sqlite3"))
+    again = open_database(database_url)
     assert count(again) == 1
     again.close()
 
 
+@ON_SQLITE
 def test_sqlite_is_durable_and_checks_references(db: Database) -> None:
     with db.reading() as session:
         pragmas = {
@@ -55,6 +61,13 @@ def test_sqlite_is_durable_and_checks_references(db: Database) -> None:
         "foreign_keys": 1,
         "busy_timeout": 30_000,
     }
+
+
+@ON_POSTGRESQL
+def test_postgresql_waits_for_the_disk_whatever_its_default_says(db: Database) -> None:
+    # The tests' server has synchronous_commit off: it is the connection that asks for it.
+    with db.writing() as session:
+        assert session.execute(text("SHOW synchronous_commit")).scalar_one() == "on"
 
 
 def test_nobody_else_on_the_machine_can_read_the_answers(tmp_path: Path) -> None:
@@ -91,6 +104,7 @@ def test_a_reading_transaction_cannot_write(db: Database) -> None:
         pass
 
 
+@ON_SQLITE
 def test_writers_in_many_threads_wait_for_each_other(db: Database) -> None:
     def add(number: int) -> None:
         for step in range(5):
@@ -147,15 +161,27 @@ def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
         open_database(str(tmp_path / "notes.txt"))
 
 
-def test_a_database_of_a_newer_version_is_left_alone(db: Database, tmp_path: Path) -> None:
+def test_a_database_of_a_newer_version_is_left_alone(db: Database, database_url: str) -> None:
     with db.writing() as session:
         session.execute(text("UPDATE alembic_version SET version_num = '9999'"))
     with pytest.raises(DatabaseError, match="made by another version of Ocularist"):
-        open_database(str(tmp_path / "study.sqlite3"))
+        open_database(database_url)
 
 
-def test_the_tables_can_be_made_on_postgresql() -> None:
-    tables = [CreateTable(table) for table in Base.metadata.sorted_tables]
-    made = "\n".join(str(table.compile(dialect=postgresql.dialect())) for table in tables)
-    assert "created_at TIMESTAMP WITH TIME ZONE NOT NULL" in made
-    assert made.count("CREATE TABLE") == 9
+def test_a_plain_postgresql_address_uses_the_driver_that_is_installed(
+    db: Database, database_url: str
+) -> None:
+    with db.writing() as session:
+        session.add(row(db, "kept"))
+    again = open_database(database_url.replace("postgresql+psycopg://", "postgresql://"))
+    assert count(again) == 1
+    again.close()
+
+
+@ON_POSTGRESQL
+def test_a_server_that_does_not_answer_is_named_without_its_password(database_url: str) -> None:
+    del database_url
+    with pytest.raises(
+        DatabaseError, match=r"postgresql.*\*\*\*@127\.0\.0\.1:9/x: cannot be opened"
+    ):
+        open_database("postgresql://me:secret@127.0.0.1:9/x")

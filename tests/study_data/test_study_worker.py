@@ -313,12 +313,12 @@ print(run_worker(open_database(sys.argv[1]), Path(sys.argv[2]), render=render, u
 
 
 def test_three_processes_on_one_file_render_no_clip_twice(
-    db: Database, queued: list[str], media: Path, tmp_path: Path
+    db: Database, queued: list[str], media: Path, tmp_path: Path, database_url: str
 ) -> None:
     here = Path(__file__).parent
     workers = [
         subprocess.Popen(
-            [sys.executable, "-c", SHARED, str(tmp_path / "study.sqlite3"), str(media)]
+            [sys.executable, "-c", SHARED, database_url, str(media)]
             + [str(tmp_path / f"alone-{number}")],
             env=os.environ | {"PYTHONPATH": f"{ROOT}{os.pathsep}{here}"},
             stdout=subprocess.PIPE,
@@ -348,17 +348,16 @@ run_worker(open_database(sys.argv[1]), Path(sys.argv[2]), render=die, until_empt
 
 
 def test_a_killed_worker_costs_only_its_clip_and_only_for_a_moment(
-    db: Database, queued: list[str], media: Path, render: Any, tmp_path: Path
+    db: Database, queued: list[str], media: Path, render: Any, database_url: str
 ) -> None:
-    database = str(tmp_path / "study.sqlite3")
     died = subprocess.run(
-        [sys.executable, "-c", KILLED, database, str(media)], check=False, cwd=ROOT
+        [sys.executable, "-c", KILLED, database_url, str(media)], check=False, cwd=ROOT
     )
     assert died.returncode == -signal.SIGKILL
     left = jobs.by_clip(db, queued[0])
     assert left is not None
     assert left.state == "claimed"
-    other = open_database(database)
+    other = open_database(database_url)
     assert run_worker(other, media, render=render, until_empty=True) == 16
     other.close()
     done = jobs.by_clip(db, queued[0])
