@@ -108,9 +108,15 @@ _CIRCUMSTANCES: Final = (
     Column("is_practice", "boolean", "true for a practice trial; left out of every analysis"),
     Column("is_catch", "boolean", "true if both eyes had the same LoD"),
     Column("certified", "boolean", "true if the clip's presentation passed the study's rule"),
+    Column(
+        "uncertified_because",
+        "text",
+        "why no presentation passed, words apart by spaces; empty where one did",
+    ),
     Column("dropped_frames", "integer", "frames that the browser did not present", "frame", low=0),
     Column("views", "integer", "how often the clip was watched", low=0),
     Column("response_ms", "integer", "from the clip's first frame to the answer", "ms", low=0),
+    Column("clock_ms", "number", "coarseness of the clock behind response_ms", "ms", low=0),
     Column("started_at", "time", "when the trial began", "ISO 8601, UTC"),
 )
 
@@ -167,6 +173,12 @@ PARTICIPANTS: Final = (
     Column("started_at", "time", "when consent was given", "ISO 8601, UTC"),
     Column("completed_at", "time", "when the last answer was stored", "ISO 8601, UTC"),
     Column("status", "text", "how far the participant came"),
+    Column(
+        "outcome",
+        "category",
+        "how taking part ended; empty while it has not",
+        choices=("completed", "screened_out", "failed_checks"),
+    ),
     Column("works_with_graphics", "category", "works with graphics", choices=("yes", "no")),
     Column("last_played", "text", "when the participant last played a computer game"),
     Column("age", "integer", "age", "year", low=0, high=130),

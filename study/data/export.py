@@ -84,7 +84,7 @@ def csv_of(frame: pd.DataFrame) -> str:
 
 
 def _is_in(person: Collected) -> bool:
-    return person.row.consented_at is not None and person.row.withdrawn_at is None
+    return person.row.consented_at is not None
 
 
 _DTYPES: Final[Mapping[str, ExtensionDtype]] = {

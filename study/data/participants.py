@@ -10,13 +10,13 @@ from datetime import datetime, timedelta
 from typing import Any, Final
 
 import numpy as np
-from sqlalchemy import delete, func, select
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
 from study.data.devices import read_device
 from study.data.refusals import WithdrawnError
-from study.data.schema import EventRow, ParticipantRow, SessionRow, TrialRow
+from study.data.schema import ParticipantRow, SessionRow
 from study.data.studies import Study
 
 IDLE: Final = timedelta(minutes=30)
@@ -41,7 +41,8 @@ class Participant:
     created_at: datetime
     last_seen_at: datetime
     completed_at: datetime | None
-    withdrawn_at: datetime | None
+    outcome: str | None
+    arrival: dict[str, Any] | None
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def enrol(
         row = ParticipantRow(
             study_id=study.id,
             public_id=_free_pseudonym(session, drawn),
-            token_hash=_hash(token),
+            token_hash=token_hash(token),
             simulated=simulated,
             language=language or study.definition.language,
             seed=int(drawn.integers(2**62)),
@@ -89,22 +90,24 @@ def enrol(
 
 
 def by_token(db: Database, token: str) -> Participant | None:
-    """Return whom a token belongs to, or None. WithdrawnError participants are returned as such."""
+    """Return whom a token belongs to, or None; those who withdrew are nobody's any more."""
     with db.reading() as session:
         row = session.scalar(
-            select(ParticipantRow).where(ParticipantRow.token_hash == _hash(token))
+            select(ParticipantRow).where(ParticipantRow.token_hash == token_hash(token))
         )
         return None if row is None else record_of(row)
 
 
 def by_public_id(db: Database, study: Study, public_id: str) -> Participant | None:
     """Return a participant of a study by pseudonym, or None."""
+    found = by_name(db, public_id)
+    return found if found is not None and found.study_id == study.id else None
+
+
+def by_name(db: Database, public_id: str) -> Participant | None:
+    """Return a participant of any study by pseudonym, or None."""
     with db.reading() as session:
-        row = session.scalar(
-            select(ParticipantRow).where(
-                ParticipantRow.study_id == study.id, ParticipantRow.public_id == public_id
-            )
-        )
+        row = session.scalar(select(ParticipantRow).where(ParticipantRow.public_id == public_id))
         return None if row is None else record_of(row)
 
 
@@ -126,33 +129,14 @@ def seen(
         return record_of(row)
 
 
-def withdraw(db: Database, participant: Participant) -> None:
-    """Erase everything about a participant but the dated fact that someone withdrew."""
-    with db.writing() as session:
-        row = session.get_one(ParticipantRow, participant.id, with_for_update=True)
-        if row.withdrawn_at is not None:
-            return
-        for table in (EventRow, TrialRow, SessionRow):
-            session.execute(delete(table).where(table.participant_id == row.id))
-        row.withdrawn_at = db.now()
-        row.seed, row.language, row.recruited_by = 0, "", ""
-        for name in _ERASED:
-            setattr(row, name, None)
-
-
-_ERASED: Final = (
-    *("size", "orbit_direction", "lease_until", "completion_code", "completed_at"),
-    *("consented_at", "about_at", "instructed_at", "begun_at"),
-)
-
-
 def locked(session: Session, participant: Participant) -> ParticipantRow:
     """Return a participant's row for writing; others who write about them wait.
 
     Raises WithdrawnError for someone who has withdrawn.
     """
-    row = session.get_one(ParticipantRow, participant.id, with_for_update=True)
-    if row.withdrawn_at is not None:
+    row = session.get(ParticipantRow, participant.id, with_for_update=True)
+    # A number of somebody erased may be given anew: the pseudonym says whether it is them.
+    if row is None or row.public_id != participant.public_id:
         raise WithdrawnError("this participant has withdrawn; nothing more is stored")
     return row
 
@@ -199,7 +183,8 @@ def _free_pseudonym(session: Session, rng: np.random.Generator) -> str:
             return name
 
 
-def _hash(token: str) -> str:
+def token_hash(token: str) -> str:
+    """Return what is stored of a token."""
     # A token has 256 random bits: a plain hash cannot be reversed, and it can be looked up.
     return hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()
 

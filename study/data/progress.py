@@ -6,11 +6,13 @@ event; after that the first trial that is not complete is the current one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-from study.data import events, trials
+from study.data import consents, events, trials
+from study.data.consents import CONSENTED
+from study.data.checks import CHECKS, done_checks, wanted
 from study.data.database import Database
 from study.data.events import Recorded
 from study.data.participants import Participant, locked
@@ -19,23 +21,29 @@ from study.data.schema import ParticipantRow
 from study.data.studies import by_id
 from study.data.trials import Trial
 from study.design.definition import StudyDefinition
-from study.design.questions import read_answers
+from study.design.questions import Question, read_answers
 
 StepName = Literal[
     "consent",
     "about",
+    "device_check",
+    "calibration",
+    "eyesight",
     "instructions",
     "preparing",
     "practice",
     "trial",
     "thanks",
+    "screened_out",
     "withdrawn",
 ]
 STEPS: Final[tuple[StepName, ...]] = (
-    *("consent", "about", "instructions", "preparing", "practice", "trial", "thanks"),
-    "withdrawn",
+    *("consent", "about", *CHECKS, "instructions", "preparing", "practice", "trial", "thanks"),
+    *("screened_out", "withdrawn"),
 )
-CONSENTED, ABOUT, INSTRUCTED, BEGUN = "consented", "about", "instructed", "begun"
+SCREENED_OUT: Final = "screened_out"
+"""The outcome of somebody who cannot take part, and the name of that step and its event."""
+ABOUT, INSTRUCTED, BEGUN = "about", "instructed", "begun"
 
 
 @dataclass(frozen=True)
@@ -52,8 +60,10 @@ def current_step(db: Database, participant: Participant) -> Step:
     """Return where a participant is, read from the database."""
     definition = by_id(db, participant.study_id).definition
     with db.reading() as session:
-        row = session.get_one(ParticipantRow, participant.id)
-        early = early_step(row, definition)
+        row = session.get(ParticipantRow, participant.id)
+        if row is None or row.public_id != participant.public_id:
+            return Step("withdrawn")
+        early = early_step(row, definition, done_checks(session, row.id, definition))
         if early is not None:
             return Step(early)
         mine = trials.trials_of(session, row.id)
@@ -65,16 +75,22 @@ def current_step(db: Database, participant: Participant) -> Step:
     return Step(name, open_trial, open_trial.number, len(alike))
 
 
-def early_step(row: ParticipantRow, definition: StudyDefinition) -> StepName | None:
-    """Return the step of someone who has not begun the trials, or None."""
-    if row.withdrawn_at is not None:
-        return "withdrawn"
+def early_step(
+    row: ParticipantRow, definition: StudyDefinition, done: Collection[str]
+) -> StepName | None:
+    """Return the step of someone who has not begun the trials, or None.
+
+    ``done`` are the checks before the clips that are done (``study.data.checks``).
+    """
+    if row.outcome == SCREENED_OUT:
+        return "screened_out"
     if row.consented_at is None:
         return "consent"
     if row.about_at is None and definition.about:
         return "about"
     if row.instructed_at is None:
-        return "instructions"
+        open_checks = (name for name in wanted(definition) if name not in done)
+        return next(open_checks, "instructions")
     return "preparing" if row.begun_at is None else None
 
 
@@ -105,11 +121,21 @@ def store_about(
             raise NotReachedError("the questions about you come after the consent")
         if events.is_known(session, row, key):
             return Recorded(False)
-        answers = read_answers(definition.about, given)
+        asked = asked_about(definition, with_health=consents.has_health_consent(session, row.id))
+        answers = read_answers(asked, given)
         now = db.now()
         row.about_at = row.about_at or now
         payload = {"answers": answers}
         return Recorded(events.add(session, row, key=key, kind=ABOUT, payload=payload, now=now))
+
+
+def asked_about(definition: StudyDefinition, *, with_health: bool) -> tuple[Question, ...]:
+    """Return the questions about the participant that they let us ask."""
+    return tuple(
+        question
+        for question in definition.about
+        if definition.consent.asks(question.id, with_health=with_health)
+    )
 
 
 def finish_instructions(db: Database, participant: Participant, *, key: str) -> Recorded:
@@ -117,9 +143,10 @@ def finish_instructions(db: Database, participant: Participant, *, key: str) -> 
     definition = by_id(db, participant.study_id).definition
     with db.writing() as session:
         row = locked(session, participant)
-        if early_step(row, definition) in ("consent", "about"):
+        done = done_checks(session, row.id, definition)
+        if early_step(row, definition, done) in ("consent", "about", *CHECKS):
             raise NotReachedError(
-                "the instructions come after the consent and the questions about you"
+                "the instructions come after the consent, the questions about you and the checks"
             )
         now = db.now()
         row.instructed_at = row.instructed_at or now
@@ -136,7 +163,8 @@ def begin(
     definition = by_id(db, participant.study_id).definition
     with db.writing() as session:
         row = locked(session, participant)
-        if early_step(row, definition) not in ("preparing", None) or row.size is None:
+        done = done_checks(session, row.id, definition)
+        if early_step(row, definition, done) not in ("preparing", None) or row.size is None:
             raise NotReachedError("the clips come after the instructions, once they are ready")
         now = db.now()
         row.begun_at = row.begun_at or now

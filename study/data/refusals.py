@@ -25,3 +25,7 @@ class UnusablePayloadError(RefusedError):
 
 class StudyConflictError(RefusedError):
     """A study's file was changed after people took part, without a new version."""
+
+
+class LinkUsedError(RefusedError):
+    """A personal link that lets nobody in: used to the end, or by somebody who withdrew."""

@@ -6,7 +6,7 @@ participant and a trial are written in the same transaction as the event that th
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from typing import Any, ClassVar
 
 from sqlalchemy import JSON, BigInteger, ForeignKey, Index, MetaData, String, Text, UniqueConstraint
@@ -64,10 +64,17 @@ class StudyRow(Base):
 
 
 class ParticipantRow(Base):
-    """One participant: who they are to us is a random pseudonym and the hash of their token."""
+    """One participant: who they are to us is a random pseudonym and the hash of their token.
+
+    ``arrival`` holds what they brought from where they were recruited, as the study file lets it be
+    kept; ``person_key`` is a keyed hash by which somebody who comes twice is known again.
+    """
 
     __tablename__ = "participants"
-    __table_args__ = (Index("ix_participants_arm", "study_id", "size", "orbit_direction"),)
+    __table_args__ = (
+        Index("ix_participants_arm", "study_id", "size", "orbit_direction"),
+        Index("ix_participants_person_key", "person_key", unique=True),
+    )
     id: Mapped[int] = mapped_column(primary_key=True)
     study_id: Mapped[int] = mapped_column(ForeignKey("studies.id"))
     public_id: Mapped[str] = mapped_column(String(20), unique=True)
@@ -86,8 +93,38 @@ class ParticipantRow(Base):
     instructed_at: Mapped[datetime | None]
     begun_at: Mapped[datetime | None]
     completed_at: Mapped[datetime | None]
-    withdrawn_at: Mapped[datetime | None]
     completion_code: Mapped[str | None] = mapped_column(String(20), unique=True)
+    outcome: Mapped[str | None] = mapped_column(String(30))
+    arrival: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    person_key: Mapped[str | None] = mapped_column(String(64))
+
+
+class LinkRow(Base):
+    """A personal link: ``is_used`` outlives its participant, so that it opens nothing twice."""
+
+    __tablename__ = "links"
+    __table_args__ = (
+        UniqueConstraint("study_id", "number"),
+        Index("ix_links_participant", "participant_id"),
+    )
+    id: Mapped[int] = mapped_column(primary_key=True)
+    study_id: Mapped[int] = mapped_column(ForeignKey("studies.id"))
+    number: Mapped[int]
+    token_hash: Mapped[str] = mapped_column(String(64), unique=True)
+    is_used: Mapped[bool]
+    participant_id: Mapped[int | None] = mapped_column(ForeignKey("participants.id"))
+    created_at: Mapped[datetime]
+
+
+class WithdrawalRow(Base):
+    """That somebody withdrew, on which day and at which step: all that is left of them."""
+
+    __tablename__ = "withdrawals"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    study_id: Mapped[int] = mapped_column(ForeignKey("studies.id"))
+    simulated: Mapped[bool]
+    withdrawn_on: Mapped[date]
+    step: Mapped[str] = mapped_column(String(30))
 
 
 class SessionRow(Base):

@@ -22,6 +22,8 @@ from study.site.signatures import csrf_token, is_csrf_token, read_researcher
 PARTICIPANT_COOKIE: Final = "ocularist_participant"
 RESEARCHER_COOKIE: Final = "ocularist_researcher"
 REMEMBER_S: Final = 60 * 24 * 3600
+WITHDRAWN: Final = "withdrawn"
+"""What the participant's cookie says where somebody withdrew: nobody's token."""
 
 
 class ElsewhereError(Exception):
@@ -58,8 +60,8 @@ class Visitor:
 
     @property
     def is_over(self) -> bool:
-        """True once completed or withdrawn."""
-        return bool(self.participant.completed_at or self.participant.withdrawn_at)
+        """True once completed or screened out."""
+        return self.participant.outcome is not None
 
 
 def visitor_or_none(request: Request, here: Here) -> Visitor | None:
@@ -72,7 +74,7 @@ def visitor_or_none(request: Request, here: Here) -> Visitor | None:
         participant=participant,
         token=token,
         csrf=csrf_token(here.secret, token),
-        study=studies.by_id(here.db, participant.study_id),
+        study=studies.by_id(here.db, participant.study_id).spoken(participant.language),
         resume_url=str(request.url_for("resume", token=token)),
     )
 

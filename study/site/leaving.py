@@ -7,11 +7,13 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import HTMLResponse, Response
+from markupsafe import Markup
 
-from study.data import completion, events, participants
+from study.data import completion, erasure, events, participants
 from study.site.access import (
     PARTICIPANT_COOKIE,
     REMEMBER_S,
+    WITHDRAWN,
     AVisitor,
     MaybeVisitor,
     Visitor,
@@ -24,10 +26,12 @@ from study.site.access import (
 )
 from study.site.forms import first, read_form
 from study.site.frame import shared
+from study.site.language import Wishes
 from study.site.place import Here
 
 router = APIRouter(default_response_class=HTMLResponse)
 STOPPED = "stopped"
+IDLE_S = int(participants.IDLE.total_seconds())
 
 
 @router.get("/continue")
@@ -59,40 +63,40 @@ def thanks(here: Here, visitor: AVisitor) -> Response:
 
 
 @router.get("/withdrawn")
-def withdrawn(here: Here, visitor: AVisitor) -> Response:
-    """Confirm that the answers of someone who withdrew are gone."""
-    step_of(here, visitor, "withdrawn")
-    return _ended(
-        here,
-        visitor,
-        "You have withdrawn",
-        "Your answers are removed. Only the date on which someone withdrew is kept.",
-        "Thank you for the time you gave.",
+def withdrawn(request: Request, here: Here, wishes: Wishes) -> Response:
+    """Confirm that the answers of someone who withdrew are gone; others have no such page."""
+    if request.cookies.get(PARTICIPANT_COOKIE) != WITHDRAWN:
+        return redirect("/continue")
+    frame = shared(here.study(wishes), None, "withdrawn", wishes=wishes)
+    text = frame["text"]
+    return here.page(
+        "participant/ended.html",
+        **frame,
+        heading=text("withdrawn.heading"),
+        lines=[text("withdrawn.removed"), text("withdrawn.thanks")],
+        offer="next",
     )
 
 
 @router.get("/stop")
 def stop(here: Here, visitor: AVisitor) -> Response:
     """Offer a break, an end, or withdrawal."""
-    if visitor.participant.withdrawn_at:
-        return redirect("/withdrawn")
     return here.page("participant/stop.html", **shared(visitor.study, visitor, "stop"), fault="")
 
 
 @router.post("/stop")
-def end(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
+def end(request: Request, here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
     """End the participation, with the answers kept or removed as the participant chose."""
     if first(fields, "choice") != "remove":
         return _keep_and_end(here, visitor)
     if first(fields, "sure") != "yes":
-        return here.page(
-            "participant/stop.html",
-            status=422,
-            **shared(visitor.study, visitor, "stop"),
-            fault="To withdraw, please tick the sentence above the button.",
-        )
-    participants.withdraw(here.db, visitor.participant)
-    return redirect("/withdrawn")
+        frame = shared(visitor.study, visitor, "stop")
+        fault = frame["text"]("stop.tick_first")
+        return here.page("participant/stop.html", status=422, **frame, fault=fault)
+    erasure.withdraw(here.db, visitor.participant)
+    answer = redirect("/withdrawn")
+    remember(request, answer, PARTICIPANT_COOKIE, WITHDRAWN, IDLE_S)
+    return answer
 
 
 def _keep_and_end(here: Here, visitor: Visitor) -> Response:
@@ -100,30 +104,32 @@ def _keep_and_end(here: Here, visitor: Visitor) -> Response:
     page = _ended(
         here,
         visitor,
-        "Thank you for taking part",
-        "You have ended the study. The answers you gave are kept.",
-        "If you change your mind, your personal link still leads to your place: "
-        + visitor.resume_url,
+        "stopped.heading",
+        "stopped.kept",
+        "stopped.link",
     )
     page.delete_cookie(PARTICIPANT_COOKIE)
     return page
 
 
 def _ended(here: Here, visitor: Visitor, heading: str, *lines: str) -> Response:
+    """Show a page after which nothing comes; ``heading`` and ``lines`` are keys of texts."""
+    frame = shared(visitor.study, visitor, "ended")
+    text, link = frame["text"], Markup('<bdi dir="ltr">{}</bdi>').format(visitor.resume_url)
     return here.page(
         "participant/ended.html",
-        **{**shared(visitor.study, visitor, "ended"), "visitor": None},
-        heading=heading,
-        lines=lines,
+        **{**frame, "visitor": None},
+        heading=text(heading),
+        lines=[text(line, link=link) for line in lines],
         offer="next",
     )
 
 
 @router.get("/next")
-def hand_over(here: Here, visitor: MaybeVisitor) -> Response:
+def hand_over(here: Here, visitor: MaybeVisitor, wishes: Wishes) -> Response:
     """Offer a shared computer to the next person, once nothing waits in this browser."""
-    study = visitor.study if visitor else here.study()
-    return here.page("participant/next.html", **shared(study, visitor, "next"))
+    study = visitor.study if visitor else here.study(wishes)
+    return here.page("participant/next.html", **shared(study, visitor, "next", wishes=wishes))
 
 
 @router.post("/next")

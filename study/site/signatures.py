@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import hashlib
 import hmac
-from typing import Final
+from collections.abc import Mapping
+from typing import Any, Final
 
 from itsdangerous import BadSignature, URLSafeTimedSerializer
 
 SIMULATION_HEADER: Final = "X-Ocularist-Simulation"
 SIGN_IN_S: Final = 12 * 3600  # a researcher's working day
 SIMULATION_S: Final = 24 * 3600
+PARTICIPANT_S: Final = 60 * 24 * 3600
+ARRIVAL_S: Final = 24 * 3600
 
 
 def csrf_token(secret: str, credential: str) -> str:
@@ -45,6 +48,49 @@ def read_researcher(secret: str, cookie: str) -> int | None:
     """Return whose cookie this is, or None when it is not ours or too old."""
     found = _load(_serializer(secret, "researcher"), cookie, SIGN_IN_S)
     return found if isinstance(found, int) else None
+
+
+def sign_participant(secret: str, public_id: str) -> str:
+    """Return a cookie for somebody who is known by what brought them, not by their token."""
+    return _serializer(secret, "participant").dumps(public_id)
+
+
+def read_participant(secret: str, cookie: str) -> str | None:
+    """Return whose cookie this is, or None when it is not ours or too old."""
+    found = _load(_serializer(secret, "participant"), cookie, PARTICIPANT_S)
+    return found if isinstance(found, str) else None
+
+
+def sign_outbox(secret: str, public_id: str) -> str:
+    """Return what lets a browser deliver a participant's answers, and nothing else.
+
+    It stays with the answers while they wait there, so that they arrive under their own name even
+    when somebody else has begun in that browser since.
+    """
+    return _serializer(secret, "outbox").dumps(public_id)
+
+
+def read_outbox(secret: str, text: str) -> str | None:
+    """Return whose answers may be delivered with this, or None."""
+    found = _load(_serializer(secret, "outbox"), text, PARTICIPANT_S)
+    return found if isinstance(found, str) else None
+
+
+def sign_arrival(secret: str, arrival: Mapping[str, Any]) -> str:
+    """Return a cookie with what brought somebody here."""
+    return str(_serializer(secret, "arrival").dumps(arrival))
+
+
+def read_arrival(secret: str, cookie: str) -> dict[str, Any] | None:
+    """Return what brought somebody here, or None."""
+    found = _load(_serializer(secret, "arrival"), cookie, ARRIVAL_S)
+    return found if isinstance(found, dict) else None
+
+
+def keyed_hash(secret: str, *parts: str) -> str:
+    """Return 64 hexadecimal digits that only this installation can compute."""
+    message = "\x1f".join(parts).encode("utf-8", "replace")
+    return hmac.new(secret.encode(), message, hashlib.sha256).hexdigest()
 
 
 def _serializer(secret: str, purpose: str) -> URLSafeTimedSerializer:
