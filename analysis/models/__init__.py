@@ -1,0 +1,1 @@
+"""Statistical models of what observers answer: fitted on counts, ignorant of tables and charts."""
