@@ -6,6 +6,7 @@ The renderer decides which values a clip accepts (``renderer.clip``); this modul
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import Annotated, Any, Final, Self
 
 from pydantic import (
@@ -46,8 +47,19 @@ def _check_text(text: str) -> str:
     return text
 
 
+@dataclass(frozen=True)
+class Translated:
+    """Marks words that participants read: a translation of the study has to hold them."""
+
+    is_needed: bool = True
+
+
 Name = Annotated[str, AfterValidator(_check_name)]
-Text = Annotated[str, AfterValidator(_check_text)]
+# Words that participants read; ``MaybeText`` may be empty, ``NameText`` may stay as it is.
+Text = Annotated[str, AfterValidator(_check_text), Translated()]
+MaybeText = Annotated[str, Translated()]
+NameText = Annotated[str, AfterValidator(_check_text), Translated(is_needed=False)]
+StoredText = Annotated[str, AfterValidator(_check_text)]  # not read by participants
 Whole = Annotated[int, Field(strict=True)]
 Real = Annotated[float, Field(strict=True)]
 Flag = Annotated[bool, Field(strict=True)]

@@ -12,7 +12,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field
 
-from study.design.parts import Flag, Name, Part, Text, Whole
+from study.design.parts import Flag, MaybeText, Name, Part, StoredText, Text, Whole
 from study.design.reasons import Reason, UnfitError
 
 Value = int | float | str
@@ -22,7 +22,7 @@ MAX_TEXT_CHARS: Final = 10_000
 class Option(Part):
     """One answer of a choice: what is stored and what is read on the page."""
 
-    value: Whole | Text
+    value: Whole | StoredText
     label: Text
 
 
@@ -30,7 +30,7 @@ class ShownIf(Part):
     """Show a question only after another one was answered with one of these values."""
 
     question: Name
-    values: Annotated[tuple[Whole | Text, ...], Field(min_length=1)]
+    values: Annotated[tuple[Whole | StoredText, ...], Field(min_length=1)]
 
 
 class _Question(Part):
@@ -38,7 +38,7 @@ class _Question(Part):
 
     id: Name
     text: Text
-    help: str = ""
+    help: MaybeText = ""
     is_required: Flag = False
     shown_if: ShownIf | None = None
 
@@ -66,7 +66,7 @@ class NumberQuestion(_Question):
     kind: Literal["number"]
     minimum: Whole
     maximum: Whole
-    unit: str = ""
+    unit: MaybeText = ""
 
 
 class TextQuestion(_Question):
