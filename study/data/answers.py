@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from study.data import completion, events
 from study.data.database import Database
@@ -38,11 +39,13 @@ def store(
     key: str,
     is_final: bool = False,
     response_ms: int | None = None,
+    clock_ms: float | None = None,
 ) -> Stored:
     """Store answers to the trial at ``position``, as a form or script gives them.
 
     ``is_final`` finishes the questionnaire: every question not answered is stored as missing, and
-    the trial is complete. ``response_ms`` counts from the clip's first frame.
+    the trial is complete. ``response_ms`` counts from the clip's first presented frame on a clock
+    that moves in steps of ``clock_ms``.
     Raises AnswerError (nothing is stored then), NotReachedError for a trial that lies ahead,
     NotWatchedError if ``is_final`` comes before the clip was watched as often as the study asks.
     """
@@ -58,7 +61,12 @@ def store(
         answers = _read(definition, state, given, is_final=is_final)
         start(trial, db)
         is_final = is_final and not state.is_complete
-        payload = {"answers": answers, "is_final": is_final, "response_ms": response_ms}
+        payload: dict[str, Any] = {
+            "answers": answers,
+            "is_final": is_final,
+            "response_ms": response_ms,
+            "clock_ms": clock_ms,
+        }
         kind = AMENDED if state.is_complete else ANSWERED
         now = db.now()
         event = events.append(

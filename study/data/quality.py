@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -10,8 +11,8 @@ from datetime import datetime
 from study.data.collection import Collected, CollectedTrial, collect
 from study.data.database import Database
 from study.data.studies import Study
-from study.data.trials import PLAYED
-from study.data.views import is_certified
+from study.data.trials import PLAYED, complete_plays
+from study.design.certificate import Certificate, Verdict, judge_trial
 from study.design.definition import StudyDefinition
 from study.design.questions import TextQuestion, is_shown
 
@@ -32,8 +33,9 @@ class Problem:
 class Quality:
     """Complete trials without practice. Text questions may stay empty and do not count as missing.
 
-    ``certified`` of the ``counted`` trials had a play with every frame shown; of the others nobody
-    could count the frames. ``median_views`` is None while there is no trial.
+    ``certified`` of the ``counted`` trials had a play that passed the study's rule; of the others
+    nobody could count the frames. ``reasons`` says why trials were not certified, the commonest
+    first. ``median_views`` is None while there is no trial.
     """
 
     trials: int
@@ -41,6 +43,7 @@ class Quality:
     missing: int
     counted: int
     certified: int
+    reasons: Sequence[tuple[str, int]]
     with_drops: int
     interrupted_plays: int
     median_views: float | None
@@ -71,14 +74,17 @@ def _quality(study: Study, people: Sequence[Collected]) -> Quality:
         for trial in person.trials
         if trial.trial.is_complete and not trial.trial.is_practice
     ]
-    verdicts = [_certified(trial) for trial in done]
+    rule = study.definition.certificate
+    verdicts = [_verdict(trial, rule) for trial in done]
+    reasons = Counter(reason for verdict in verdicts for reason in verdict.reasons)
     asked, missing = _asked_and_missing(study.definition, done)
     return Quality(
         trials=len(done),
         asked=asked,
         missing=missing,
-        counted=sum(verdict is not None for verdict in verdicts),
-        certified=sum(verdict is True for verdict in verdicts),
+        counted=sum(verdict.certified is not None for verdict in verdicts),
+        certified=sum(verdict.certified is True for verdict in verdicts),
+        reasons=reasons.most_common(),
         with_drops=sum(any(p.get("dropped_frames") for p in _plays(trial)) for trial in done),
         interrupted_plays=sum(
             not play.get("is_complete") for trial in done for play in _plays(trial)
@@ -92,10 +98,8 @@ def _plays(trial: CollectedTrial) -> list[dict[str, object]]:
     return [event.payload for event in trial.events if event.kind == PLAYED]
 
 
-def _certified(trial: CollectedTrial) -> bool | None:
-    """Return True if one play showed every frame, None if nobody counted."""
-    verdicts = [verdict for p in _plays(trial) if (verdict := is_certified(p)) is not None]
-    return any(verdicts) if verdicts else None
+def _verdict(trial: CollectedTrial, rule: Certificate) -> Verdict:
+    return judge_trial(complete_plays(trial.trial.completed_at, trial.events), rule)
 
 
 def _asked_and_missing(

@@ -16,7 +16,7 @@ from study.data.devices import plausible
 from study.data.progress import early_step
 from study.data.studies import Study
 from study.data.trials import ANSWERED, complete_plays
-from study.data.views import is_certified
+from study.design.certificate import judge_trial
 from study.design.definition import StudyDefinition
 from study.design.parts import read_size
 from study.design.pixels import median_iris_px
@@ -39,6 +39,7 @@ def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row
     trial, row = collected.trial, person.row
     plays = complete_plays(trial.completed_at, collected.events)
     clip = study.definition.clip(trial.clip)
+    verdict = judge_trial(plays, study.definition.certificate)
     return {
         **_who(study, person),
         "session": f"{row.public_id}-{collected.sitting}" if collected.sitting else None,
@@ -50,10 +51,11 @@ def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row
         "orbit_direction": row.orbit_direction,
         "is_practice": trial.is_practice,
         "is_catch": clip.is_catch,
-        "certified": _certified(plays),
+        "certified": verdict.certified,
+        "uncertified_because": " ".join(verdict.reasons) or None,
         "dropped_frames": _total(plays, "dropped_frames"),
         "views": trial.views,
-        "response_ms": _response_ms(collected),
+        **_response(collected),
         "started_at": _iso(trial.started_at),
         "_iris_px": _iris_px(study.definition, person, collected),
     }
@@ -115,16 +117,15 @@ def _iris_px(
     return median_iris_px(spec)
 
 
-def _response_ms(collected: CollectedTrial) -> int | None:
+def _response(collected: CollectedTrial) -> Row:
+    """Return when the answer came, and how finely the browser's clock told it."""
     finals = [e.payload for e in collected.events if e.kind == ANSWERED and e.payload["is_final"]]
-    found = plausible(finals[-1].get("response_ms")) if finals else None
-    return None if found is None else round(found)
-
-
-def _certified(plays: Sequence[Mapping[str, Any]]) -> bool | None:
-    """Return True if one play passed the rule, None if nobody counted the frames of any."""
-    verdicts = [verdict for play in plays if (verdict := is_certified(play)) is not None]
-    return any(verdicts) if verdicts else None
+    last = finals[-1] if finals else {}
+    found = plausible(last.get("response_ms"))
+    return {
+        "response_ms": None if found is None else round(found),
+        "clock_ms": None if found is None else plausible(last.get("clock_ms")),
+    }
 
 
 def _last(plays: Sequence[Mapping[str, Any]], name: str) -> float | None:

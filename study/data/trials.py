@@ -61,6 +61,15 @@ def at(db: Database, participant: Participant, position: int) -> Trial | None:
     return found[0] if found else None
 
 
+def clip_id_at(db: Database, participant: Participant, position: int) -> str | None:
+    """Return which clip a participant sees at a position, or None."""
+    query = select(TrialRow.clip_id).where(
+        TrialRow.participant_id == participant.id, TrialRow.position == position
+    )
+    with db.reading() as session:
+        return session.scalar(query)
+
+
 def trials_of(session: Session, participant_id: int) -> tuple[Trial, ...]:
     """Read a participant's trials with plays counted and answers folded."""
     rows = session.scalars(

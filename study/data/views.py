@@ -22,9 +22,8 @@ def record(
 ) -> Recorded:
     """Add one play of a trial's clip.
 
-    ``play`` is the player's report: ``is_complete`` (watched to the end), and where known
-    ``expected_frames``, ``presented_frames``, ``dropped_frames``, ``was_hidden``, ``shown_scale``,
-    ``started_at``, ``duration_ms`` and facts about the screen.
+    ``play`` is the player's raw record (``static/certificate.js``), kept as it came; whether the
+    play counts is ``study.design.certificate``'s to say, whenever somebody asks.
     Raises NotReachedError for a trial that lies ahead.
     """
     with db.writing() as session:
@@ -52,21 +51,3 @@ def check_reached(session: Session, trial: TrialRow) -> None:
     )
     if session.scalar(open_before.limit(1)) is not None:
         raise NotReachedError(f"trial {trial.position} comes after the ones before it")
-
-
-def is_certified(play: Mapping[str, Any]) -> bool | None:
-    """Say whether a play showed its clip as it should be seen; None where nobody counted frames.
-
-    Rule: watched to the end, never hidden, every frame but one accounted for, at most 1 % dropped.
-    """
-    expected, presented = play.get("expected_frames"), play.get("presented_frames")
-    dropped = play.get("dropped_frames")
-    if not isinstance(expected, int) or not isinstance(presented, int) or expected <= 0:
-        return None
-    lost = dropped if isinstance(dropped, int) else 0
-    return (
-        bool(play.get("is_complete"))
-        and not play.get("was_hidden")
-        and presented + lost >= expected - 1
-        and lost <= 0.01 * expected
-    )

@@ -14,19 +14,20 @@ from functools import cached_property
 from importlib import resources
 from itertools import product
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from renderer.clip import DIRECTIONS, PATHS, ClipSpec
 from renderer.detail import EFFECTS, Detail
 from renderer.lod.choice import LodPolicy
 from study.design.approach import Approach, PolicyData, policy_of
+from study.design.certificate import Certificate
 from study.design.calibration import Calibration
 from study.design.checks import cross_faults
 from study.design.device_check import DeviceCheck
 from study.design.eyesight import Eyesight
-from study.design.faults import DefinitionError, Fault, faults_of, suggestion
+from study.design.faults import DefinitionError, Fault, faults_of, refuse, suggestion
 from study.design.files import find_files, without_later_keys, without_paths
 from study.design.pairings import CatchClip, Clip, Factors, LodRow, all_clips, detail_of
 from study.design.parts import (
@@ -51,6 +52,13 @@ class Order(Part):
 
     trials: Literal["random", "file"] = "random"
     min_views: Annotated[Whole, Field(ge=1, le=10)] = 1
+    max_views: Annotated[Whole, Field(ge=1, le=100)] | None = None
+
+    @model_validator(mode="after")
+    def _views_fit(self) -> Self:
+        if self.max_views is not None and self.max_views < self.min_views:
+            raise refuse(f"max_views: {self.max_views} is fewer than min_views, {self.min_views}")
+        return self
 
 
 @dataclass(frozen=True)
@@ -85,6 +93,7 @@ class StudyDefinition(Part):
     factors: tuple[Factors, ...] = ()
     catch: tuple[CatchClip, ...] = ()
     order: Order = Order()
+    certificate: Certificate = Certificate()
     consent: Consent
     about: tuple[Question, ...] = ()
     about_page: Page

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
+from study.design.certificate import Certificate
 from study.design.faults import Fault
 from study.design.raw import Data, rows_of, table_of
 
@@ -95,6 +96,8 @@ _LATER: Final[Mapping[str, Any]] = {
     "switching": None,
     "cube_size": "table",
     **dict.fromkeys(("device_check", "calibration", "eyesight"), None),
+    "max_views": None,
+    "certificate": Certificate().model_dump(mode="json"),
 }
 
 

@@ -12,6 +12,8 @@ from study.site.place import Here
 
 router = APIRouter()
 FOR_EVER: Final = {"Cache-Control": "public, max-age=31536000, immutable"}
+# Clips are rendered in the study file's order: the time of a file would tell its condition.
+ALWAYS_THE_SAME: Final = "Thu, 01 Jan 1970 00:00:00 GMT"
 TYPES: Final = {".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
 
 
@@ -22,7 +24,8 @@ def clip(here: Here, name: str) -> Response:
     path = here.clips.file(name)
     if path is None:
         raise HTTPException(404)
-    return FileResponse(path, media_type="video/mp4", headers=FOR_EVER)
+    headers = {**FOR_EVER, "ETag": f'"{name}"', "Last-Modified": ALWAYS_THE_SAME}
+    return FileResponse(path, media_type="video/mp4", headers=headers)
 
 
 @router.get("/static/{version}/{name}")

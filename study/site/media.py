@@ -1,7 +1,8 @@
 """The shelf of rendered clips: which file shows a trial, under a name that says nothing.
 
-A clip's public name is the hash of its file. It tells nothing of LoDs, distance or study, and a
-clip that is rendered anew gets another name: browsers may keep what they have for ever.
+A clip's public name is the SHA-256 of its file. It tells nothing of LoDs, distance or study, lets
+a browser check what arrived, and changes when the clip is rendered anew: browsers may keep what
+they have for ever.
 """
 
 from __future__ import annotations
@@ -9,11 +10,9 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 from renderer.manifest import MANIFEST_NAME, ClipRecord, Manifest, read_manifest
-
-NAME_DIGITS: Final = 32
 
 
 @dataclass
@@ -58,7 +57,7 @@ class ClipShelf:
 
 def public_name(record: ClipRecord) -> str:
     """Return the name under which the site serves a clip."""
-    return record.file_sha256[:NAME_DIGITS]
+    return record.file_sha256
 
 
 def clip_url(record: ClipRecord) -> str:
@@ -69,3 +68,12 @@ def clip_url(record: ClipRecord) -> str:
 def to_preload(record: ClipRecord) -> dict[str, Any]:
     """Return what the preloader needs to know: where the clip is and how long."""
     return {"url": clip_url(record), "bytes": record.file_bytes}
+
+
+def to_expect(record: ClipRecord) -> dict[str, Any]:
+    """Return what the record of a faultless play of this clip holds."""
+    return {
+        "expected_frames": record.frame_count,
+        "expected_fps": record.fps,
+        "expected_sha256": record.file_sha256,
+    }

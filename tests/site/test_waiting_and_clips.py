@@ -78,6 +78,24 @@ def test_clips_are_served_whole_and_by_ranges(guest: Any) -> None:
     assert part.status_code == 206
     assert part.content == whole.content[:2]
     assert part.headers["content-range"] == f"bytes 0-1/{clip['bytes']}"
+    resumed = {"Range": "bytes=2-3", "If-Range": whole.headers["etag"]}
+    assert guest.client.get(clip["url"], headers=resumed).content == whole.content[2:4]
+    assert guest.client.get(clip["url"], headers={**resumed, "If-Range": '"old"'}).status_code == 200
+
+
+def test_a_clip_is_named_by_its_contents_and_tells_no_time(site: Any, guest: Any) -> None:
+    guest.walk_to_preparing()
+    clips = guest.client.get(STATE).json()["clips"]
+    answers = [guest.client.get(clip["url"]) for clip in clips]
+    for clip, answer in zip(clips, answers, strict=True):
+        name = hashlib.sha256(answer.content).hexdigest()
+        assert clip["url"] == f"/clips/{name}.mp4"
+        assert answer.headers["etag"] == f'"{name}"'
+        # Neither the path on the disk nor the order in which files were written is to be seen.
+        assert "content-disposition" not in answer.headers
+    assert {answer.headers["last-modified"] for answer in answers} == {
+        "Thu, 01 Jan 1970 00:00:00 GMT"
+    }
 
 
 def test_nothing_but_clips_is_served_as_a_clip(guest: Any) -> None:
@@ -150,7 +168,7 @@ def test_a_master_is_never_served(site: Any, guest: Any) -> None:
     guest.walk_to_preparing()
     shelf = ClipShelf(folder)
     assert shelf.file(public_name(record)) is not None
-    for name in (sha256[:32], "a.master", "a.master.mkv", f"{record.clip_id}.master"):
+    for name in (sha256, "a.master", "a.master.mkv", f"{record.clip_id}.master"):
         assert shelf.file(name) is None
         for suffix in (".mp4", ".mkv", ""):
             assert guest.client.get(f"/clips/{name}{suffix}").status_code == 404

@@ -14,7 +14,6 @@ from study.data.answers import Stored
 from study.data.database import Database
 from study.data.refusals import NotReachedError, NotWatchedError, UnusablePayloadError
 from study.data.schema import EventRow
-from study.data.views import is_certified
 from study.design.questions import AnswerError
 
 MISSING = {
@@ -242,31 +241,6 @@ def test_any_order_of_repeated_answers_keeps_the_first_of_each_key_and_the_last_
             expected[question] = read or None
         known.add(key)
     assert trial(walk, 1).answers == expected
-
-
-@pytest.mark.parametrize(
-    ("changes", "verdict"),
-    [
-        ({}, True),
-        ({"presented_frames": 9}, True),
-        ({"presented_frames": 8}, False),
-        ({"presented_frames": 98, "dropped_frames": 2, "expected_frames": 100}, False),
-        ({"presented_frames": 99, "dropped_frames": 1, "expected_frames": 100}, True),
-        ({"was_hidden": True}, False),
-        ({"is_complete": False}, False),
-        ({"presented_frames": None}, None),
-        ({"expected_frames": "many"}, None),
-    ],
-)
-def test_a_play_is_certified_by_its_frames(changes: dict[str, Any], verdict: bool | None) -> None:
-    play = {
-        "is_complete": True,
-        "expected_frames": 10,
-        "presented_frames": 10,
-        "dropped_frames": 0,
-        "was_hidden": False,
-    }
-    assert is_certified({**play, **changes}) is verdict
 
 
 def test_a_play_that_was_cut_is_recorded_but_no_view(begun: Any) -> None:
