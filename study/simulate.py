@@ -26,7 +26,7 @@ from study.design.questions import (
     Value,
     accepted_values,
 )
-from study.design.schedule import all_arms
+from study.design.arms import all_arms
 
 
 def simulate(

@@ -1,4 +1,4 @@
-"""Arms: which picture size and orbit direction a participant gets, and when its clips are ready.
+"""Arms: which size, direction and block of clips a participant gets, and in which order.
 
 An arm is leased. A lease lives as long as its participant gives signs of life and half an hour
 more; an expired one no longer counts for balance, but its participant may come back and go on.
@@ -6,67 +6,25 @@ more; an expired one no longer counts for balance, but its participant may come 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from sqlalchemy import func, or_, select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
-from study.data.jobs import DONE, FAILED
 from study.data.participants import IDLE, Participant, locked, record_of
-from study.data.schema import JobRow, ParticipantRow, StudyRow
+from study.data.readiness import Screen, fitting_sizes, ready_arms
+from study.data.schema import ParticipantRow, StudyRow
 from study.data.studies import Study, by_id
+from study.design.arms import Arm, all_arms, assign_arm, assign_row
 from study.design.definition import StudyDefinition
-from study.design.parts import Size, read_size
-from study.design.schedule import Arm, all_arms, assign_arm
+from study.design.parts import read_size
+from study.design.schedule import order_rows
 
-Screen = tuple[int, int]
-"""Width and height in device pixels of what a clip may fill."""
-
-
-@dataclass(frozen=True)
-class Readiness:
-    """How far the clips for one screen are. ``progress`` runs from 0 to 1 for the nearest arm.
-
-    ``is_stuck`` is True when every fitting arm has a clip whose rendering was given up: waiting
-    will not help, a researcher has to look.
-    """
-
-    fits: bool
-    is_ready: bool
-    progress: float
-    clips_left: int
-    is_stuck: bool = False
-
-
-@dataclass(frozen=True)
-class _Share:
-    """How far one arm's clips are."""
-
-    progress: float
-    left: int
-    failed: int
-
-
-def readiness(db: Database, participant: Participant, *, screen: Screen | None) -> Readiness:
-    """Say whether a participant with this screen can start; ``fits`` is False on a small screen."""
-    definition = by_id(db, participant.study_id).definition
-    fitting = {str(size) for size in fitting_sizes(definition, screen)}
-    with db.reading() as session:
-        shares = _shares(session, definition)
-    mine = [shares[arm] for arm in shares if arm.size in fitting]
-    if not mine:
-        return Readiness(fits=False, is_ready=False, progress=0.0, clips_left=0)
-    nearest = max(mine, key=lambda share: (share.left == 0, not share.failed, share.progress))
-    return Readiness(
-        fits=True,
-        is_ready=nearest.left == 0,
-        progress=nearest.progress,
-        clips_left=nearest.left,
-        is_stuck=nearest.failed > 0,
-    )
+Filled = Counter[tuple[Arm, int | None]]
+"""How many completed or are at work, by arm and row of the orders."""
 
 
 def assign(
@@ -76,7 +34,7 @@ def assign(
     screen: Screen | None = None,
     available: Sequence[Arm] | None = None,
 ) -> Participant | None:
-    """Lease the least filled arm whose clips are ready: the largest size that fits the screen.
+    """Lease a least filled arm whose clips are ready, of the largest size that fits the screen.
 
     Returns the participant with their arm, or None while no fitting arm is ready. Asked again, it
     keeps the arm; before the first trial it takes another if the screen no longer fits.
@@ -94,39 +52,74 @@ def assign(
         size = next((str(s) for s in fitting if any(a.size == str(s) for a in open_arms)), None)
         if size is None:
             return None
-        arm = assign_arm(
-            arm_counts(db, session, row),
-            [arm for arm in open_arms if arm.size == size],
-            np.random.default_rng(row.seed),
-        )
-        row.size, row.orbit_direction = arm.size, arm.orbit_direction
-        row.lease_until = db.now() + IDLE
+        _lease(db, session, row, definition, [arm for arm in open_arms if arm.size == size])
         return record_of(row)
 
 
-def fitting_sizes(definition: StudyDefinition, screen: Screen | None) -> list[Size]:
-    """Return the study's sizes that a screen can show pixel for pixel, largest first."""
-    sizes = sorted(definition.sizes, key=lambda size: size.width * size.height, reverse=True)
-    if screen is None:
-        return sizes
-    return [size for size in sizes if size.width <= screen[0] and size.height <= screen[1]]
+def _lease(
+    db: Database,
+    session: Session,
+    row: ParticipantRow,
+    definition: StudyDefinition,
+    choice: Sequence[Arm],
+) -> None:
+    filled = _filled(db, session, row.study_id, simulated=row.simulated, but=row.id)
+    rng = np.random.default_rng(row.seed)
+    arm = assign_arm(_by_arm(filled), choice, rng, blocks=definition.blocks)
+    row.size, row.orbit_direction, row.block = arm.size, arm.orbit_direction, arm.block
+    if row.order_row is None:
+        used = Counter({(a, n): count for (a, n), count in filled.items() if n is not None})
+        row.order_row = assign_row(used, arm, len(order_rows(definition)), rng)
+    row.lease_until = db.now() + IDLE
 
 
 def counts(db: Database, study: Study, *, simulated: bool = False) -> dict[Arm, int]:
     """Return completed participants plus live leases of every arm."""
     with db.reading() as session:
-        filled = _counts(db, session, study.id, simulated=simulated)
-    return {arm: filled.get(arm, 0) for arm in all_arms(study.definition)}
+        filled = _by_arm(_filled(db, session, study.id, simulated=simulated))
+    return {arm: filled[arm] for arm in all_arms(study.definition)}
 
 
-def arm_counts(db: Database, session: Session, row: ParticipantRow) -> dict[Arm, int]:
-    """Count the arms among a participant's like: simulated people do not unbalance real ones."""
-    return _counts(db, session, row.study_id, simulated=row.simulated)
+def row_counts(db: Database, study: Study, *, simulated: bool = False) -> dict[int, int]:
+    """Return completed participants plus live leases of every row of the orders, from 1."""
+    with db.reading() as session:
+        filled = _filled(db, session, study.id, simulated=simulated)
+    found = dict.fromkeys(range(1, len(order_rows(study.definition)) + 1), 0)
+    for (_, number), count in filled.items():
+        if number is not None:
+            found[number] += count
+    return found
 
 
-def _counts(db: Database, session: Session, study_id: int, *, simulated: bool) -> dict[Arm, int]:
+def arm_of(row: ParticipantRow | Participant) -> Arm | None:
+    """Return a participant's arm, or None while they have none."""
+    if row.size is None or row.orbit_direction is None:
+        return None
+    return Arm(row.size, row.orbit_direction, row.block)
+
+
+def _by_arm(filled: Filled) -> Counter[Arm]:
+    found: Counter[Arm] = Counter()
+    for (arm, _), count in filled.items():
+        found[arm] += count
+    return found
+
+
+def _filled(
+    db: Database, session: Session, study_id: int, *, simulated: bool, but: int | None = None
+) -> Filled:
+    """Count one kind of people, as simulated ones must not unbalance real ones.
+
+    ``but`` leaves out the participant who asks: a lease that they give up is no longer one.
+    """
+    places = (
+        ParticipantRow.size,
+        ParticipantRow.orbit_direction,
+        ParticipantRow.block,
+        ParticipantRow.order_row,
+    )
     query = (
-        select(ParticipantRow.size, ParticipantRow.orbit_direction, func.count())
+        select(*places, func.count())
         .where(
             ParticipantRow.study_id == study_id,
             ParticipantRow.simulated == simulated,
@@ -136,30 +129,11 @@ def _counts(db: Database, session: Session, study_id: int, *, simulated: bool) -
                 ParticipantRow.lease_until > db.now(),
             ),
         )
-        .group_by(ParticipantRow.size, ParticipantRow.orbit_direction)
+        .group_by(*places)
     )
-    return {
-        Arm(size or "", direction or ""): count for size, direction, count in session.execute(query)
-    }
-
-
-def ready_arms(session: Session, definition: StudyDefinition) -> list[Arm]:
-    """Return the arms all of whose clips are rendered."""
-    return [arm for arm, share in _shares(session, definition).items() if share.left == 0]
-
-
-def _shares(session: Session, definition: StudyDefinition) -> dict[Arm, _Share]:
-    """Return for every arm how far its clips are; only a finished clip counts as whole."""
-    query = select(JobRow.clip_id, JobRow.state, JobRow.progress)
-    states = {clip_id: (state, share) for clip_id, state, share in session.execute(query)}
-    shares = {}
-    for arm in all_arms(definition):
-        specs = definition.clip_specs(read_size(arm.size), arm.orbit_direction).values()
-        mine = [states.get(clip_id, ("", 0.0)) for clip_id in {spec.clip_id for spec in specs}]
-        whole = [1.0 if state == DONE else min(share, 0.99) for state, share in mine]
-        shares[arm] = _Share(
-            progress=sum(whole) / len(whole),
-            left=sum(share < 1.0 for share in whole),
-            failed=sum(state == FAILED for state, _ in mine),
-        )
-    return shares
+    if but is not None:
+        query = query.where(ParticipantRow.id != but)
+    found: Filled = Counter()
+    for size, direction, block, order_row, count in session.execute(query):
+        found[Arm(size or "", direction or "", block), order_row] += count
+    return found

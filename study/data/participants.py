@@ -38,6 +38,8 @@ class Participant:
     recruited_by: str
     size: str | None
     orbit_direction: str | None
+    block: int | None
+    order_row: int | None
     created_at: datetime
     last_seen_at: datetime
     completed_at: datetime | None

@@ -85,6 +85,8 @@ class ParticipantRow(Base):
     recruited_by: Mapped[str] = mapped_column(String(60))
     size: Mapped[str | None] = mapped_column(String(20))
     orbit_direction: Mapped[str | None] = mapped_column(String(20))
+    block: Mapped[int | None]
+    order_row: Mapped[int | None]
     lease_until: Mapped[datetime | None]
     created_at: Mapped[datetime]
     last_seen_at: Mapped[datetime]

@@ -132,7 +132,7 @@ def lay_out(session: Session, row: ParticipantRow, definition: StudyDefinition) 
     )
     if has_trials is not None or row.size is None or row.orbit_direction is None:
         return
-    specs = definition.clip_specs(read_size(row.size), row.orbit_direction)
+    files = definition.file_names(read_size(row.size), row.orbit_direction)
     session.add_all(
         TrialRow(
             participant_id=row.id,
@@ -140,9 +140,9 @@ def lay_out(session: Session, row: ParticipantRow, definition: StudyDefinition) 
             number=trial.number,
             is_practice=trial.is_practice,
             clip=trial.clip.id,
-            clip_id=specs[trial.clip.id].clip_id,
+            clip_id=files[trial.clip.id],
         )
-        for trial in schedule(definition, row.seed)
+        for trial in schedule(definition, row.seed, block=row.block, order_row=row.order_row)
     )
     session.flush()
 
@@ -152,5 +152,6 @@ def clip_ids(db: Database, participant: Participant) -> tuple[str, ...]:
     if participant.size is None or participant.orbit_direction is None:
         return ()
     definition = by_id(db, participant.study_id).definition
-    specs = definition.clip_specs(read_size(participant.size), participant.orbit_direction)
-    return tuple(specs[trial.clip.id].clip_id for trial in schedule(definition, participant.seed))
+    files = definition.file_names(read_size(participant.size), participant.orbit_direction)
+    places = {"block": participant.block, "order_row": participant.order_row}
+    return tuple(files[t.clip.id] for t in schedule(definition, participant.seed, **places))

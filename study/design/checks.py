@@ -13,10 +13,16 @@ from pydantic import ValidationError
 
 from renderer.detail import EFFECTS
 from study.design.approach import check_approaches, check_switching
+from study.design.completion import check_completion
 from study.design.faults import Fault, Place, dotted, unknown
+from study.design.gold import check_gold
+from study.design.irises import check_irises
 from study.design.pairings import CatchClip, Factors
+from study.design.pauses import check_pauses
 from study.design.question_checks import check_questions
 from study.design.raw import Data, repeated, rows_of, table_of
+from study.design.recruiting import check_recruiting
+from study.design.texts import check_consent
 
 
 def cross_faults(data: Data) -> list[Fault]:
@@ -74,8 +80,8 @@ def _check_references(data: Data) -> Iterator[Fault]:
 
 
 _REFERENCES: Final = (
-    *((table, key, "LoD") for table in ("practice", "clips") for key in ("left", "right")),
-    *((table, "distance", "distance") for table in ("practice", "clips", "catch")),
+    *((table, key, "LoD") for table in ("practice", "clips", "gold") for key in ("left", "right")),
+    *((table, "distance", "distance") for table in ("practice", "clips", "catch", "gold")),
     ("catch", "lod", "LoD"),
     ("factors", "lods", "LoD"),
     ("factors", "against", "LoD"),
@@ -91,7 +97,7 @@ def _check_clips(data: Data) -> Iterator[Fault]:
 
 def _named_clips(data: Data) -> Iterator[tuple[Place, str]]:
     """Return the place and id of every clip, generated ones included where they can be read."""
-    for table in ("practice", "clips"):
+    for table in ("practice", "clips", "gold"):
         for index, row in rows_of(data, table):
             if isinstance(row.get("id"), str):
                 yield (table, index, "id"), row["id"]
@@ -124,7 +130,13 @@ _CHECKS: Final[tuple[Callable[[Data], Iterator[Fault]], ...]] = (
     check_switching,
     check_approaches,
     _check_references,
+    check_irises,
     _check_clips,
+    check_gold,
+    check_pauses,
     check_questions,
+    check_consent,
+    check_completion,
+    check_recruiting,
     _check_repeats,
 )

@@ -23,10 +23,12 @@ SUN_KEYS: Final = ("sun_azimuth_deg", "sun_elevation_deg")
 def find_files(data: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
     """Replace the paths in a parsed study file; return it with the faults of what was not found."""
     scene, faults = _with_environment(table_of(data, "scene"), folder)
-    eye, more = _with_iris(table_of(data, "eye"), folder)
-    found = {name: table for name, table in (("scene", scene), ("eye", eye)) if table}
+    eye, more = _with_iris(table_of(data, "eye"), folder, place="eye")
+    irises, missed = _with_irises(table_of(data, "irises"), folder)
+    tables = (("scene", scene), ("eye", eye), ("irises", irises))
+    found = {name: table for name, table in tables if table}
     policy, amiss = _with_policy(data.get("lod_policy"), folder)
-    return {**data, **found, **policy}, [*faults, *more, *amiss]
+    return {**data, **found, **policy}, [*faults, *more, *missed, *amiss]
 
 
 def _with_environment(scene: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
@@ -53,18 +55,29 @@ def _with_environment(scene: Data, folder: Path) -> tuple[dict[str, Any], list[F
     return {**scene, **found}, faults
 
 
-def _with_iris(eye: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
+def _with_irises(irises: Data, folder: Path) -> tuple[dict[str, Any], list[Fault]]:
+    """Do for every iris of a study what ``_with_iris`` does for the one of all eyes."""
+    found, faults = dict(irises), []
+    for name, table in irises.items():
+        if isinstance(table, Mapping):
+            found[name], more = _with_iris(table, folder, place=f"irises.{name}")
+            faults += more
+    return found, faults
+
+
+def _with_iris(eye: Data, folder: Path, *, place: str) -> tuple[dict[str, Any], list[Fault]]:
     """Add the contents' hash to ``iris_file = "anna.npz"``, an iris taken from a photograph."""
     named = eye.get("iris_file")
     if not isinstance(named, str) or not named:
         return dict(eye), []
     path = (folder / named).absolute()
-    colours = Fault("eye.iris_colour", f"{named} brings its own colours; leave this out")
+    colours = Fault(f"{place}.iris_colour", f"{named} brings its own colours; leave this out")
     faults = [colours] if "iris_colour" in eye else []
     try:
         sha256 = contents_sha256(path)
     except OSError as error:
-        fault = Fault("eye.iris_file", f"{path}: {error.strerror}; ocularist iris PHOTO writes one")
+        text = f"{path}: {error.strerror}; ocularist iris PHOTO writes one"
+        fault = Fault(f"{place}.iris_file", text)
         return {key: value for key, value in eye.items() if key != "iris_file"}, [*faults, fault]
     return {**eye, "iris_file": str(path), "iris_sha256": sha256}, faults
 
@@ -91,11 +104,17 @@ def contents_sha256(path: Path) -> str:
 
 # What definitions of an earlier version did not hold, with what it is when it is left out.
 _LATER: Final[Mapping[str, Any]] = {
+    "translations": {},
     "lod_policy": None,
     "motion": "orbit",
     "switching": None,
     "cube_size": "table",
     **dict.fromkeys(("device_check", "calibration", "eyesight"), None),
+    **dict.fromkeys(("iris", "per_person", "breaks"), None),
+    **dict.fromkeys(("irises", "gold", "attention"), ()),  # an empty list, or an empty table
+    "warm_up": 0,
+    **dict.fromkeys(("completion", "recruiting"), None),
+    **dict.fromkeys(("minimum_age", "motion_warning", "withdrawal", "backup_days", "health"), None),
     "max_views": None,
     "certificate": Certificate().model_dump(mode="json"),
 }
@@ -117,8 +136,12 @@ def _said(table: Mapping[str, Any]) -> dict[str, Any]:
     return {
         key: _said_within(value)
         for key, value in table.items()
-        if key not in _LATER or value != _LATER[key]
+        if key not in _LATER or not _is_silent(value, _LATER[key])
     }
+
+
+def _is_silent(value: Any, default: Any) -> bool:
+    return not value if default == () else bool(value == default)
 
 
 def _said_within(value: Any) -> Any:
@@ -135,8 +158,7 @@ def _clip_rows(data: Mapping[str, Any]) -> list[Mapping[str, Any]]:
 def without_paths(tables: Mapping[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
     """Leave out the keys that say where a file lies, in every table: contents count, not places."""
     return {
-        key: {name: entry for name, entry in value.items() if name not in names}
-        if isinstance(value, Mapping)
-        else value
+        key: without_paths(value, names) if isinstance(value, Mapping) else value
         for key, value in tables.items()
+        if key not in names
     }

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import cache
+from itertools import pairwise
 
 Row = tuple[int, ...]
 
@@ -33,6 +34,4 @@ def williams(count: int) -> tuple[Row, ...]:
 
 def carry_over(rows: Iterable[Sequence[int]]) -> Counter[tuple[int, int]]:
     """Count how often each item comes right after each other: ``(before, after)`` -> times."""
-    return Counter(
-        pair for row in rows for pair in zip(row, row[1:], strict=False) if pair[0] != pair[1]
-    )
+    return Counter(pair for row in rows for pair in pairwise(row) if pair[0] != pair[1])

@@ -70,8 +70,13 @@ class Clip(Part):
         return self.left == self.right
 
     @property
+    def condition(self) -> tuple[str, str, str, str]:
+        """What is compared and from where: all but the iris."""
+        return self.distance, self.left, self.right, self.motion
+
+    @property
     def pairing(self) -> str:
-        """The clip's id without its iris: what several irises share."""
+        """The clip's id without its iris."""
         return self.id.removesuffix(f"-{self.iris}") if self.iris else self.id
 
 

@@ -22,7 +22,7 @@ from study.design.parts import Part, Whole
 MOST_BLOCKS: Final = 240  # more are never filled, and preparing would take seconds
 
 Block = tuple[Clip, ...]
-Condition = tuple[str, str, str]
+Condition = tuple[str, str, str, str]
 
 
 class PerPerson(Part):
@@ -63,7 +63,7 @@ def _ring(stratum: Sequence[Clip]) -> list[list[Clip]]:
     """
     by_condition: dict[Condition, list[Clip]] = {}
     for clip in stratum:
-        by_condition.setdefault((clip.left, clip.right, clip.motion), []).append(clip)
+        by_condition.setdefault(clip.condition, []).append(clip)
     pairs: list[Condition] = []  # each as the file shows it first
     for condition in by_condition:
         if _swapped(condition) not in pairs:
@@ -80,8 +80,8 @@ def _ring(stratum: Sequence[Clip]) -> list[list[Clip]]:
 
 
 def _swapped(condition: Condition) -> Condition:
-    left, right, motion = condition
-    return right, left, motion
+    distance, left, right, motion = condition
+    return distance, right, left, motion
 
 
 def _window(ring: Sequence[Sequence[Clip]], number: int, share: int, *, place: int) -> list[Clip]:

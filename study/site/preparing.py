@@ -9,9 +9,8 @@ from fastapi import APIRouter, Query
 from fastapi.responses import HTMLResponse, Response
 
 from study.data import arms, jobs, participants, progress, trials
-from study.data.arms import Screen
 from study.data.participants import Participant
-from study.design.parts import Size
+from study.data.readiness import Readiness, readiness
 from study.site.access import AVisitor, Visitor, VisitorsForm, redirect, step_of, to_current
 from study.site.forms import first
 from study.site.frame import shared
@@ -47,12 +46,12 @@ def state(
     """
     participants.seen(here.db, visitor.participant)  # who waits here is at work
     screen = (screen_width_px, screen_height_px)
-    ready = arms.readiness(here.db, visitor.participant, screen=screen)
+    ready = readiness(here.db, visitor.participant, screen=screen)
     news = {
         "fits": ready.fits,
         "is_ready": False,
         "progress": round(ready.progress, 4),
-        "wait": _wait(here, visitor, screen, is_stuck=ready.is_stuck),
+        "wait": _wait(here, visitor, ready),
         "clips": [],
     }
     if not ready.is_ready:
@@ -73,30 +72,17 @@ def _clips(here: Here, participant: Participant) -> list[dict[str, Any]] | None:
     return [to_preload(record) for record in records.values() if record is not None]
 
 
-def _wait(here: Here, visitor: Visitor, screen: Screen, *, is_stuck: bool) -> str:
+def _wait(here: Here, visitor: Visitor, ready: Readiness) -> str:
     """Say in calm words how long the nearest complete set of clips takes."""
-    definition = visitor.study.definition
     words = catalogue(language_of(visitor.study, (visitor.participant.language,)))
-    if is_stuck:
+    if ready.is_stuck:
         return words.text("preparing.stuck", code=STUCK)
-    nearest = _nearest(here, visitor, arms.fitting_sizes(definition, screen))
-    if nearest is None or nearest.left_s is None:
+    left_s = jobs.summary(here.db, ready.clips).left_s
+    if left_s is None:
         return words.text("preparing.time_unknown")
-    if nearest.left_s < 60:
+    if left_s < 60:
         return words.text("preparing.seconds_left")
-    return words.text("preparing.minutes_left", count=math.ceil(nearest.left_s / 60))
-
-
-def _nearest(here: Here, visitor: Visitor, sizes: list[Size]) -> jobs.Summary | None:
-    definition = visitor.study.definition
-    summaries = [
-        jobs.summary(
-            here.db, {spec.clip_id for spec in definition.clip_specs(size, direction).values()}
-        )
-        for size in sizes
-        for direction in definition.orbit.directions
-    ]
-    return max(summaries, key=lambda summary: summary.progress, default=None)
+    return words.text("preparing.minutes_left", count=math.ceil(left_s / 60))
 
 
 @router.post("/preparing")

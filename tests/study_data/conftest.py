@@ -17,8 +17,8 @@ from study.data import answers, arms, participants, progress, studies, views
 from study.data.database import Database, open_database
 from study.data.participants import Participant
 from study.data.studies import Study
+from study.design.arms import all_arms
 from study.design.definition import StudyDefinition, parse_definition
-from study.design.schedule import all_arms
 
 LEVELS = ("texture", "refraction", "reflection", "subsurface", "caustics", "tessellation", "sclera")
 PAGE = {"title": "Title", "button": "Go on", "paragraphs": [{"text": "Words."}]}

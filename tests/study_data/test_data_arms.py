@@ -10,9 +10,10 @@ import pytest
 
 from study.data import arms, jobs, participants, progress
 from study.data.database import Database
+from study.data.readiness import readiness
 from study.data.studies import Study
+from study.design.arms import Arm, all_arms
 from study.design.definition import WantedClip
-from study.design.schedule import Arm, all_arms
 
 SMALL, LARGE = "320x180", "640x360"
 
@@ -36,14 +37,15 @@ def test_nobody_starts_before_the_clips_of_one_arm_are_there(
 ) -> None:
     assert len(wanted) == 16
     walk.to_preparing()
-    before = arms.readiness(db, walk.participant, screen=(1920, 1080))
-    assert before == arms.Readiness(fits=True, is_ready=False, progress=0.0, clips_left=4)
+    before = readiness(db, walk.participant, screen=(1920, 1080))
+    assert (before.fits, before.is_ready, before.progress, before.clips_left) == (True, False, 0, 4)
+    assert before.clips == {one.spec.clip_id for one in wanted[:4]}
     assert arms.assign(db, walk.participant) is None
     render(db, 3)
-    assert arms.readiness(db, walk.participant, screen=None).clips_left == 1
+    assert readiness(db, walk.participant, screen=None).clips_left == 1
     assert arms.assign(db, walk.participant) is None
     render(db, 1)
-    assert arms.readiness(db, walk.participant, screen=None).is_ready
+    assert readiness(db, walk.participant, screen=None).is_ready
     leased = arms.assign(db, walk.participant)
     assert leased is not None
     assert (leased.size, leased.orbit_direction) == (SMALL, "rightward")
@@ -56,7 +58,7 @@ def test_a_clip_under_way_moves_the_progress_but_is_not_ready(
     job = jobs.claim(db, worker="w")
     assert job is not None
     jobs.report(db, job, worker="w", progress=1.0)
-    found = arms.readiness(db, walk.participant, screen=None)
+    found = readiness(db, walk.participant, screen=None)
     assert found.progress == pytest.approx(0.99 / 4)
     assert found.clips_left == 4
 
@@ -72,13 +74,13 @@ def test_waiting_for_a_clip_that_was_given_up_is_said_to_be_in_vain(
 
     small, everything = (400, 400), (1920, 1080)
     give_up_next()
-    assert not arms.readiness(db, walk.participant, screen=small).is_stuck
+    assert not readiness(db, walk.participant, screen=small).is_stuck
     render(db, 3)
     give_up_next()
-    assert arms.readiness(db, walk.participant, screen=small).is_stuck
-    assert not arms.readiness(db, walk.participant, screen=everything).is_stuck
+    assert readiness(db, walk.participant, screen=small).is_stuck
+    assert not readiness(db, walk.participant, screen=everything).is_stuck
     render(db, len(wanted) - 5)
-    assert arms.readiness(db, walk.participant, screen=everything).is_ready
+    assert readiness(db, walk.participant, screen=everything).is_ready
 
 
 def test_the_largest_size_that_fits_and_is_ready_is_taken(
@@ -96,7 +98,7 @@ def test_a_screen_that_is_too_small_fits_nothing(
     db: Database, walk: Any, wanted: list[WantedClip]
 ) -> None:
     render(db, len(wanted))
-    assert not arms.readiness(db, walk.participant, screen=(319, 1000)).fits
+    assert not readiness(db, walk.participant, screen=(319, 1000)).fits
     assert arms.assign(db, walk.participant, screen=(319, 1000)) is None
 
 

@@ -10,9 +10,10 @@ from study.data import arms, completion, events, participants, progress, studies
 from study.data.database import Database
 from study.data.refusals import NotReachedError
 from study.data.studies import Study
+from study.design.arms import all_arms
 from study.design.definition import parse_definition
 from study.design.questions import AnswerError
-from study.design.schedule import all_arms, schedule
+from study.design.schedule import schedule
 from study.texts import catalogue
 
 ENGLISH = catalogue("en").text
