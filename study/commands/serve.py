@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import argparse
+import os
+from typing import TYPE_CHECKING, Final
 
-from study.commands.options import add_listening, add_places, add_study, settings_of
+from study.commands.errors import CommandError
+from study.commands.options import add_listening, add_places, add_study, count, settings_of
+
+if TYPE_CHECKING:
+    from fastapi import FastAPI
+
+    from study.settings import Settings
 
 HELP = "run the site alone"
 DESCRIPTION = (
     "Run the participants' and the researchers' pages. Clips are rendered elsewhere: by ocularist "
     "worker on the same database and clips' folder, or beforehand by ocularist render."
 )
-GRACE_S = 5  # for answers on their way when the site is told to stop
+GRACE_S: Final = 5  # for answers on their way when the site is told to stop
+STUDY_ID: Final = "OCULARIST_STUDY_ID"
+"""Tells the site's processes which study newcomers take part in."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,6 +29,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_study(parser)
     add_places(parser)
     add_listening(parser)
+    parser.add_argument(
+        "--processes",
+        type=count,
+        default=1,
+        metavar="N",
+        help="server processes, on PostgreSQL (default: 1)",
+    )
     parser.add_argument("--quiet", action="store_true", help="do not print the addresses")
 
 
@@ -29,17 +46,21 @@ def run(options: argparse.Namespace) -> int:
     from study.commands.listening import check_port, welcome
     from study.commands.preparing import prepare
     from study.commands.researcher import add_first
-    from study.site.app import create_app
 
     settings = settings_of(options)
+    _check_processes(settings, options.processes)
     check_port(settings)
     prepared = prepare(settings, options.study)
     password = add_first(prepared.db)
     prepared.db.close()  # the site opens its own
+    settings.secret_key()  # made before several processes ask for it
     if not options.quiet:
         print("\n".join(welcome(settings, prepared.study.title, password)), flush=True)
+    os.environ |= {**_environment(settings), STUDY_ID: str(prepared.study.id)}
     uvicorn.run(
-        create_app(settings, study=prepared.study),
+        "study.commands.serve:site_of_environment",
+        factory=True,
+        workers=options.processes,
         host=settings.host,
         port=settings.port,
         log_level="warning",
@@ -50,3 +71,28 @@ def run(options: argparse.Namespace) -> int:
         ssl_keyfile=settings.tls_key,
     )
     return 0
+
+
+def _check_processes(settings: Settings, processes: int) -> None:
+    """Refuse several processes on SQLite: one of them writes, and the others would only wait."""
+    if processes > 1 and not settings.database_url.startswith("postgres"):
+        raise CommandError(
+            f"--processes {processes} needs PostgreSQL; SQLite is written by one process at a time "
+            "(--database postgresql://host/name, or leave out --processes)"
+        )
+
+
+def _environment(settings: Settings) -> dict[str, str]:
+    return {
+        "OCULARIST_DATA": str(settings.data_folder),
+        "OCULARIST_DATABASE": settings.database_url,
+        "OCULARIST_MEDIA": str(settings.media_folder),
+    }
+
+
+def site_of_environment() -> FastAPI:
+    """Build the site in a server process, from what ``run`` left in the environment."""
+    from study.settings import read_settings
+    from study.site.app import create_app
+
+    return create_app(read_settings(os.environ), study_id=int(os.environ[STUDY_ID]))

@@ -14,17 +14,18 @@ from starlette.exceptions import HTTPException
 
 from study.data.database import open_database
 from study.data.refusals import RefusedError, WithdrawnError
-from study.data.studies import Study
 from study.settings import Settings
 from study.site import (
     about,
     beginning,
     clips,
+    consent,
     dashboard,
     door,
     downloads,
     gallery,
     health,
+    invitations,
     leaving,
     news,
     preparing,
@@ -40,8 +41,10 @@ from study.site.problems import problem_page
 log = logging.getLogger("ocularist.site")
 FOR_SCRIPTS = ("/events", "/preparing/state")
 ROOMS = (
-    about,
     beginning,
+    invitations,
+    consent,
+    about,
     preparing,
     trial,
     news,
@@ -56,16 +59,16 @@ ROOMS = (
 )
 
 
-def create_app(settings: Settings, *, study: Study | None = None) -> FastAPI:
+def create_app(settings: Settings, *, study_id: int | None = None) -> FastAPI:
     """Build the site.
 
-    ``study`` is the one that newcomers take part in; without it the database's latest. People who
+    ``study_id`` names the one that newcomers take part in; without it the database's latest. People who
     have begun another one go on with theirs.
     """
     place = Place(
         settings=settings,
         db=open_database(settings.database_url),
-        study_id=None if study is None else study.id,
+        study_id=study_id,
         clips=ClipShelf(settings.media_folder),
         secret=settings.secret_key(),
     )

@@ -213,7 +213,7 @@ class Serving:
 
     def __init__(self, settings: Settings, study: studies.Study) -> None:
         self.socket = socket.create_server(("127.0.0.1", 0))
-        app = create_app(settings, study=study)
+        app = create_app(settings, study_id=study.id)
         self.server = uvicorn.Server(
             uvicorn.Config(app, log_level="critical", access_log=False, lifespan="on")
         )
