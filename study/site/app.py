@@ -28,6 +28,7 @@ from study.site import (
     invitations,
     leaving,
     news,
+    pause,
     preparing,
     results,
     trial,
@@ -47,6 +48,7 @@ ROOMS = (
     about,
     preparing,
     trial,
+    pause,
     news,
     leaving,
     clips,
@@ -62,8 +64,8 @@ ROOMS = (
 def create_app(settings: Settings, *, study_id: int | None = None) -> FastAPI:
     """Build the site.
 
-    ``study_id`` names the one that newcomers take part in; without it the database's latest. People who
-    have begun another one go on with theirs.
+    ``study_id`` names the study that newcomers take part in; without it the database's latest.
+    People who have begun another one go on with theirs.
     """
     place = Place(
         settings=settings,
