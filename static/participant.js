@@ -4,12 +4,14 @@ import { Outbox } from "./outbox.js";
 import { ClipStore } from "./preload.js";
 import { startAbout } from "./about.js";
 import { startNext, startStop } from "./leaving.js";
+import { startPause } from "./pause.js";
 import { startPreparing } from "./preparing.js";
 import { text } from "./texts.js";
 import { startTrial } from "./trial.js";
 
 const PAGES = {
   about: startAbout,
+  pause: startPause,
   preparing: startPreparing,
   trial: startTrial,
   next: startNext,

@@ -10,9 +10,9 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-from study.data import consents, events, trials
-from study.data.consents import CONSENTED
+from study.data import consents, events, pauses, trials
 from study.data.checks import CHECKS, done_checks, wanted
+from study.data.consents import CONSENTED
 from study.data.database import Database
 from study.data.events import Recorded
 from study.data.participants import Participant, locked
@@ -21,6 +21,7 @@ from study.data.schema import ParticipantRow
 from study.data.studies import by_id
 from study.data.trials import Trial
 from study.design.definition import StudyDefinition
+from study.design.pauses import Pause
 from study.design.questions import Question, read_answers
 
 StepName = Literal[
@@ -33,12 +34,15 @@ StepName = Literal[
     "preparing",
     "practice",
     "trial",
+    "pause",
     "thanks",
     "screened_out",
     "withdrawn",
 ]
 STEPS: Final[tuple[StepName, ...]] = (
-    *("consent", "about", *CHECKS, "instructions", "preparing", "practice", "trial", "thanks"),
+    *("consent", "about"),
+    *CHECKS,
+    *("instructions", "preparing", "practice", "trial", "thanks"),
     *("screened_out", "withdrawn"),
 )
 SCREENED_OUT: Final = "screened_out"
@@ -48,12 +52,16 @@ ABOUT, INSTRUCTED, BEGUN = "about", "instructed", "begun"
 
 @dataclass(frozen=True)
 class Step:
-    """What to show now; at "practice" and "trial" the ``number``-th trial of ``total``."""
+    """What to show now; at "practice" and "trial" the ``number``-th trial of ``total``.
+
+    At a "pause" ``number`` of ``total`` trials are done.
+    """
 
     name: StepName
     trial: Trial | None = None
     number: int = 0
     total: int = 0
+    pause: Pause | None = None
 
 
 def current_step(db: Database, participant: Participant) -> Step:
@@ -67,10 +75,13 @@ def current_step(db: Database, participant: Participant) -> Step:
         if early is not None:
             return Step(early)
         mine = trials.trials_of(session, row.id)
+        pause = pauses.due_pause(session, row.id, definition, mine)
     open_trial = next((trial for trial in mine if not trial.is_complete), None)
     if open_trial is None:
         return Step("thanks")
     alike = [trial for trial in mine if trial.is_practice == open_trial.is_practice]
+    if pause is not None:
+        return Step("pause", None, open_trial.number - 1, len(alike), pause)
     name: StepName = "practice" if open_trial.is_practice else "trial"
     return Step(name, open_trial, open_trial.number, len(alike))
 
