@@ -12,7 +12,6 @@ from study.data.database import Database
 from study.data.refusals import StudyConflictError
 from study.data.schema import ParticipantRow, StudyRow
 from study.design.definition import StudyDefinition, parse_definition
-from study.design.translations import in_language, languages_of
 
 
 @dataclass(frozen=True)
@@ -28,11 +27,11 @@ class Study:
     @property
     def languages(self) -> tuple[str, ...]:
         """The languages that the study's words are written in, its own first."""
-        return languages_of(self.definition)
+        return self.definition.languages
 
     def spoken(self, language: str) -> Study:
         """Return the study with the words of one of its languages; of its own for any other."""
-        definition = in_language(self.definition, language)
+        definition = self.definition.in_language(language)
         return replace(self, title=definition.title, definition=definition)
 
 
