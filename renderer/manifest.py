@@ -34,9 +34,11 @@ class ClipRecord:
     How well it is encoded, inside the eyes, left and right: ``psnr_db``, ``ssim`` and mean FLIP (0
     to 1) of raw against decoded, in the whole rectangle (``flip_rectangle``) and at the pixels in
     which the clip's LoDs differ (``flip_encoding``); there too the FLIP of one LoD against the
-    other (``flip_lods``). ``flip_note`` says why any is null. ``crf`` is x264's constant rate
-    factor, ``max_bytes`` the bound on the file; ``missed`` has a sentence per bound that does not
-    hold. ``master`` has ``file``, ``sha256`` and ``bytes`` of the frames without loss, or is null.
+    other (``flip_lods``). ``flip_share`` is the former's sum as a share of the latter's, and
+    ``flip_floor`` what 8 bits of 4:2:0 alone would have of it in the middle frame. ``flip_note``
+    says why any is null. ``crf`` is x264's constant rate factor, ``max_bytes`` the bound on the
+    file; ``missed`` has a sentence per bound that does not hold. ``master`` has ``file``,
+    ``sha256`` and ``bytes`` of the frames without loss, or is null.
     """
 
     clip_id: str
@@ -62,6 +64,8 @@ class ClipRecord:
     flip_rectangle: list[float] | None = None
     flip_encoding: list[float] | None = None
     flip_lods: list[float] | None = None
+    flip_share: float | None = None
+    flip_floor: float | None = None
     flip_note: str = ""
     crf: float | None = None
     max_bytes: int | None = None

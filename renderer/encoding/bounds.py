@@ -1,35 +1,25 @@
-"""What an encoded clip may cost and lose, and which quality to try next when it does not hold."""
+"""What an encoded clip may cost and lose, and how fine it is made so that it holds."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 from renderer.clip import ClipSpec
 from renderer.encoding.comparison import Fidelity
+from renderer.encoding.encode import BUFFER_S, QUALITY
 
 MAX_BYTES: Final = 8_000_000  # of a clip of 5 s with 1920 x 1080 pixels or fewer
 REFERENCE_S: Final = 5.0
 REFERENCE_PX: Final = 1920 * 1080
 MAX_FLIP_SHARE: Final = 0.1
-STEPS_PER_OCTAVE: Final = 5.0  # what doubled or halved a macroscopic clip's file; noise needs 11
-FULL: Final = 0.95  # aim a little below the bound
-FINEST: Final = 8.0
-COARSEST: Final = 50.0
-LONGEST_STEP: Final = 12.0
-LEAST_STEP: Final = 0.5
-WORTHWHILE: Final = 1.0  # less finer is not worth encoding again
+FULL: Final = 0.97  # aim a little below the bound: the file has a head, the buffer is no wall
+FILLED: Final = 0.9  # of x264's rate buffer before the first frame
+STEPS_PER_OCTAVE: Final = 5.0  # what doubles or halves a clip's file
+FINEST_BY: Final = 6.0  # steps; a picture of 720 lines then takes what one of 1080 does
 
-
-@dataclass(frozen=True)
-class Attempt:
-    """One encoding of a clip, its quality as x264's constant rate factor: less is better."""
-
-    quality: float
-    file_bytes: int
-    fidelity: Fidelity
+# How much finer a clip can be than at macroscopic for as many bytes: measured, docs/encoding.md.
+FINER: Final = {"macroscopic": 0.0, "near": 3.5, "medium": 3.5, "far": 3.5}
 
 
 def max_bytes(spec: ClipSpec) -> int:
@@ -42,53 +32,34 @@ def max_bytes(spec: ClipSpec) -> int:
     return round(MAX_BYTES * seconds / REFERENCE_S * larger)
 
 
-def missed_bounds(attempt: Attempt, *, limit: int) -> list[str]:
+def max_rate(spec: ClipSpec) -> float:
+    """Return the rate in bits per second that keeps a clip's file below ``max_bytes``.
+
+    What the full buffer holds at the start comes on top of it.
+    """
+    seconds = spec.frame_count / spec.fps
+    return FULL * 8 * max_bytes(spec) / (seconds + FILLED * BUFFER_S)
+
+
+def quality(spec: ClipSpec) -> float:
+    """Return the constant rate factor with which a clip nearly fills its bytes."""
+    octaves = math.log2(REFERENCE_PX / (spec.width * spec.height))
+    smaller = min(FINEST_BY, max(0.0, STEPS_PER_OCTAVE * octaves))
+    return QUALITY - FINER[spec.distance] - smaller
+
+
+def missed_bounds(file_bytes: int, fidelity: Fidelity, *, limit: int) -> list[str]:
     """Return a sentence for each bound that does not hold: found and accepted."""
     missed = []
-    if attempt.file_bytes > limit:
+    if file_bytes > limit:
         missed.append(
-            f"the file has {attempt.file_bytes / 1e6:.2f} MB; at most {limit / 1e6:.2f} MB "
-            "are accepted"
+            f"the file has {file_bytes / 1e6:.2f} MB; at most {limit / 1e6:.2f} MB are accepted"
         )
-    share = attempt.fidelity.flip_share
+    share, floor = fidelity.flip_share, fidelity.flip_floor
     if share is not None and share > MAX_FLIP_SHARE:
+        known = "" if floor is None else f"; 8 bits of 4:2:0 alone, uncompressed, have {floor:.3f}"
         missed.append(
             f"FLIP of the encoding is {share:.3f} of FLIP between its LoDs; "
-            f"at most {MAX_FLIP_SHARE} is accepted"
+            f"at most {MAX_FLIP_SHARE} is accepted{known}"
         )
     return missed
-
-
-def next_quality(tried: Sequence[Attempt], *, limit: int) -> float | None:
-    """Return the quality to try after some attempts, None where no other can do better."""
-    last = tried[-1]
-    to_bound = _steps_per_octave(tried) * math.log2(last.file_bytes / (FULL * limit))
-    share = last.fidelity.flip_share
-    if last.file_bytes > limit:
-        wanted = min(COARSEST, last.quality + max(LEAST_STEP, to_bound))
-    elif share is not None and share > MAX_FLIP_SHARE:
-        wanted = max(FINEST, last.quality - min(LONGEST_STEP, -to_bound))
-        return wanted if wanted <= last.quality - WORTHWHILE else None
-    else:
-        return None
-    return wanted if wanted > last.quality else None
-
-
-def _steps_per_octave(tried: Sequence[Attempt]) -> float:
-    """Return how many steps of quality double or halve a file, from the last two attempts."""
-    if len(tried) < 2 or tried[-1].file_bytes == tried[-2].file_bytes:
-        return STEPS_PER_OCTAVE
-    steps = tried[-1].quality - tried[-2].quality
-    found = steps / math.log2(tried[-2].file_bytes / tried[-1].file_bytes)
-    return min(max(found, STEPS_PER_OCTAVE / 2), 3 * STEPS_PER_OCTAVE)
-
-
-def better(one: Attempt, other: Attempt, *, limit: int) -> Attempt:
-    """Return the better attempt: within the bound on size, then the one that lost less."""
-    return min(one, other, key=lambda attempt: _rank(attempt, limit))
-
-
-def _rank(attempt: Attempt, limit: int) -> tuple[int, float]:
-    if attempt.file_bytes > limit:
-        return attempt.file_bytes, 0.0
-    return 0, attempt.quality

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.clip import ClipSpec
-from renderer.encoding.encode import decode
+from renderer.encoding.decode import as_stored, decode
 from renderer.encoding.eye_boxes import frame_rectangles
 from renderer.encoding.fidelity import psnr_db, ssim
 from renderer.encoding.flip import WHY_NOT, flip_map, is_installed
@@ -26,9 +26,10 @@ Pixels = npt.NDArray[np.uint8]
 EyePair = tuple[Pixels, Pixels]
 
 SIGNAL_FRAMES: Final = 12  # compared by PSNR and SSIM
-FLIP_FRAMES: Final = 4  # compared by FLIP, which costs ten times as much
+FLIP_FRAMES: Final = 3  # compared by FLIP, which costs ten times as much; one is the middle
 NOT_ASKED: Final = "FLIP was not asked for"
 SAME_LODS: Final = "both eyes have one LoD, so there is no difference to compare with"
+SWITCHING: Final = "an eye switches its LoD, so there is no one difference to compare with"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,8 +38,9 @@ class Fidelity:
 
     ``flip_encoding`` is raw against decoded, ``flip_lods`` the clip's LoDs against each other, both
     over the pixels in which the LoDs differ; where they are one LoD, over the whole rectangle and
-    None. ``flip_rectangle`` is raw against decoded over the whole rectangle. ``flip_note`` says why
-    any is None.
+    None. ``flip_rectangle`` is raw against decoded over the whole rectangle. ``flip_floor`` is the
+    share of ``flip_lods`` that 8 bits of 4:2:0 alone have, in the middle frame: no encoding of this
+    form comes below it. ``flip_note`` says why any is None.
     """
 
     psnr_db: list[float]
@@ -46,6 +48,7 @@ class Fidelity:
     flip_rectangle: list[float] | None = None
     flip_encoding: list[float] | None = None
     flip_lods: list[float] | None = None
+    flip_floor: float | None = None
     flip_note: str = ""
 
     @property
@@ -62,7 +65,7 @@ def signal_numbers(spec: ClipSpec) -> list[int]:
 
 
 def flip_numbers(spec: ClipSpec) -> list[int]:
-    """Return the numbers of the frames compared by FLIP: each the middle of a quarter."""
+    """Return the numbers of the frames compared by FLIP: each the middle of a third."""
     return sorted({int((k + 0.5) / FLIP_FRAMES * spec.frame_count) for k in range(FLIP_FRAMES)})
 
 
@@ -84,12 +87,18 @@ class Comparison:
         self._wanted = {*self._signal, *self._flip}
         self._raw: dict[int, EyePair] = {}
         self._differs: dict[int, list[npt.NDArray[np.bool_]]] = {}
-        self._flip_lods: list[float] | None = None
+        self._lods: dict[int, tuple[float, float]] = {}
+        self._others: dict[int, EyePair] = {}
 
     @property
     def other_lods(self) -> list[int]:
-        """The frames that ``take_other`` waits for: of the same clip with its LoDs exchanged."""
-        return self._flip if self.spec.swapped() != self.spec else []
+        """The frames that ``take_other`` waits for: of the same clip with its LoDs exchanged.
+
+        None where the eyes have one LoD, and none where one switches: its policy chooses LoDs that
+        hardly differ, and what is rated is the switch, not a difference that a frame has.
+        """
+        is_switching = self.spec.lod_policy is not None
+        return [] if is_switching or self.spec.swapped() == self.spec else self._flip
 
     def take(self, number: int, pixels: Pixels) -> None:
         """Keep what is compared later of a raw frame (height, width, 3)."""
@@ -98,15 +107,8 @@ class Comparison:
 
     def take_other(self, frames: Iterator[Pixels]) -> None:
         """Take the frames ``other_lods`` of the clip with its LoDs exchanged, in their order."""
-        lods: tuple[list[float], list[float]] = ([], [])
-        for number, pixels in zip(self._flip, frames, strict=True):
-            masks = []
-            others = eyes_of(self.spec, number, pixels)
-            for eye, (own, other) in enumerate(zip(self._raw[number], others, strict=True)):
-                masks.append((own != other).any(axis=-1))
-                lods[eye].append(_mean(flip_map(own, other), masks[eye]))
-            self._differs[number] = masks
-        self._flip_lods = [statistics.fmean(values) for values in lods]
+        for number, pixels in zip(self.other_lods, frames, strict=True):
+            self._others[number] = eyes_of(self.spec, number, pixels)
 
     def compare(self, path: Path) -> Fidelity:
         """Decode an encoding of the clip and compare it with what was kept."""
@@ -116,6 +118,7 @@ class Comparison:
                 path, list(self._raw), size=(self.spec.width, self.spec.height)
             ).items()
         }
+        self._compare_lods()
         both = [self._compare_eye(eye, seen) for eye in (0, 1)]
         psnr, similar, rectangle, encoding = (list(values) for values in zip(*both, strict=True))
         if not self.with_flip:
@@ -125,9 +128,36 @@ class Comparison:
             ssim=similar,
             flip_rectangle=rectangle,
             flip_encoding=encoding,
-            flip_lods=self._flip_lods,
-            flip_note="" if self._flip_lods else SAME_LODS,
+            flip_lods=self._mean_lods(),
+            flip_floor=self._floor(),
+            flip_note=self._why_no_lods(),
         )
+
+    def _compare_lods(self) -> None:
+        for number, others in self._others.items():
+            pairs = list(zip(self._raw[number], others, strict=True))
+            masks = [(own != other).any(axis=-1) for own, other in pairs]
+            left, right = (
+                _mean(flip_map(*pair), mask) for pair, mask in zip(pairs, masks, strict=True)
+            )
+            self._differs[number], self._lods[number] = masks, (left, right)
+
+    def _mean_lods(self) -> list[float] | None:
+        return [statistics.fmean(eye) for eye in zip(*self._lods.values(), strict=True)] or None
+
+    def _why_no_lods(self) -> str:
+        if self._lods:
+            return ""
+        return SAME_LODS if self.spec.lod_policy is None else SWITCHING
+
+    def _floor(self) -> float | None:
+        """Return the share of the LoDs' FLIP that the form alone has, in the middle frame."""
+        middle = self._flip[len(self._flip) // 2]
+        if not sum(self._lods.get(middle, (0.0,))):
+            return None
+        eyes = zip(self._raw[middle], self._differs[middle], strict=True)
+        lost = [_mean(flip_map(raw, as_stored(raw)), mask) for raw, mask in eyes]
+        return sum(lost) / sum(self._lods[middle])
 
     def _compare_eye(self, eye: int, seen: dict[int, EyePair]) -> tuple[float, float, float, float]:
         """Return PSNR, SSIM, FLIP in the rectangle and FLIP where LoDs differ of one eye."""

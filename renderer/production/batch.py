@@ -1,7 +1,8 @@
 """Clips and their manifest: render what is missing, once, and survive being killed.
 
 A clip's file appears under its name only when it is whole, and in the manifest only after that; an
-interrupted batch leaves a hidden part file that the next one removes.
+interrupted batch leaves a hidden part file that the next one removes. While a clip is drawn, the
+one before is compared with its encoding in another process.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ from pathlib import Path
 
 from renderer.clip import ClipSpec
 from renderer.manifest import ClipRecord, read_manifest, write_manifest
-from renderer.production.making import FrameSource, Progress, make_clip
+from renderer.production.finishing import Finishing
+from renderer.production.making import DrawnClip, FrameSource, Progress, draw_clip, finish_clip
 
 
 def render_clips(
@@ -33,17 +35,40 @@ def render_clips(
     ``progress`` hears the clip's number (0-based) and the share of it that is done.
     """
     remove_parts(folder)
-    return [
-        render_clip(
-            spec,
-            folder,
-            source=source,
-            progress=partial(progress, number),
-            with_master=with_master,
-            with_flip=with_flip,
-        )
-        for number, spec in enumerate(specs)
-    ]
+    wanted = {spec.clip_id: spec for spec in specs}
+    records: dict[str, ClipRecord] = {}
+    waiting: list[Callable[[], ClipRecord]] = []
+
+    def bring_in() -> None:
+        while waiting:
+            record = waiting.pop()()
+            records[record.clip_id] = record
+
+    with Finishing() as finishing:
+        try:
+            for number, (clip_id, spec) in enumerate(wanted.items()):
+                kept = _kept(spec, folder, with_master=with_master)
+                if kept is None:
+                    drawn = _draw(
+                        spec,
+                        folder,
+                        source=source,
+                        progress=partial(progress, number),
+                        with_master=with_master,
+                        with_flip=with_flip,
+                    )
+                    bring_in()
+                    is_last = number + 1 == len(wanted)
+                    finished = partial(finish_clip, drawn) if is_last else finishing.start(drawn)
+                    waiting.append(partial(_bring_in, drawn, folder, finished))
+                else:
+                    records[clip_id] = kept
+                    progress(number, 1.0)
+        finally:
+            bring_in()  # what is drawn is not lost by what went wrong later
+    if records:
+        progress(len(wanted) - 1, 1.0)
+    return [records[clip_id] for clip_id in wanted]
 
 
 def render_clip(
@@ -59,30 +84,65 @@ def render_clip(
 
     ``with_master`` keeps its frames beside it without loss: a clip without them is made again.
     """
-    kept = read_manifest(folder).current(spec.clip_id, folder)
-    if kept is not None and (kept.has_master(folder) or not with_master):
-        progress(1.0)
-        return kept
-    folder.mkdir(parents=True, exist_ok=True)
-    part = folder / f".{spec.clip_id}.{_host()}.{os.getpid()}.part.mp4"
-    master = part.with_suffix(".master.mkv")
-    try:
-        record = make_clip(
+    kept = _kept(spec, folder, with_master=with_master)
+    if kept is None:
+        drawn = _draw(
             spec,
-            part,
+            folder,
             source=source,
             progress=progress,
-            master=master if with_master else None,
+            with_master=with_master,
             with_flip=with_flip,
         )
-        if record.master is not None:
-            master.replace(folder / record.master["file"])
-        part.replace(folder / record.file)
+        kept = _bring_in(drawn, folder, partial(finish_clip, drawn))
+    progress(1.0)
+    return kept
+
+
+def _kept(spec: ClipSpec, folder: Path, *, with_master: bool) -> ClipRecord | None:
+    record = read_manifest(folder).current(spec.clip_id, folder)
+    return record if record and (record.has_master(folder) or not with_master) else None
+
+
+def _draw(
+    spec: ClipSpec,
+    folder: Path,
+    *,
+    source: FrameSource,
+    progress: Progress,
+    with_master: bool,
+    with_flip: bool,
+) -> DrawnClip:
+    """Draw a clip into a part file, and its master into another."""
+    folder.mkdir(parents=True, exist_ok=True)
+    part = folder / f".{spec.clip_id}.{_host()}.{os.getpid()}.part.mp4"
+    master = part.with_suffix(".master.mkv") if with_master else None
+    try:
+        return draw_clip(
+            spec, part, source=source, progress=progress, master=master, with_flip=with_flip
+        )
+    except BaseException:
+        _remove(part, master)
+        raise
+
+
+def _bring_in(drawn: DrawnClip, folder: Path, finished: Callable[[], ClipRecord]) -> ClipRecord:
+    """Give a clip's files their names and the manifest its record, once it is finished."""
+    try:
+        record = finished()
+        if drawn.master is not None and record.master is not None:
+            drawn.master.replace(folder / record.master["file"])
+        drawn.path.replace(folder / record.file)
     finally:
-        part.unlink(missing_ok=True)
-        master.unlink(missing_ok=True)
+        _remove(drawn.path, drawn.master)
     keep_record(record, folder)
     return record
+
+
+def _remove(*paths: Path | None) -> None:
+    for path in paths:
+        if path is not None:
+            path.unlink(missing_ok=True)
 
 
 def keep_record(record: ClipRecord, folder: Path) -> None:

@@ -16,9 +16,9 @@ LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
 SPEC = ClipSpec(left=LOW, right=ULTRA, width=256, height=144, duration_s=0.2)
 
 
-def test_the_frames_of_flip_are_the_middles_of_a_clips_quarters() -> None:
+def test_the_frames_of_flip_are_the_middles_of_a_clips_thirds() -> None:
     whole = ClipSpec(left=LOW, right=ULTRA)
-    assert flip_numbers(whole) == [18, 56, 93, 131]
+    assert flip_numbers(whole) == [25, 75, 125]
     assert flip_numbers(ClipSpec(left=LOW, right=ULTRA, duration_s=0.04)) == [0]
     assert signal_numbers(whole) == list(range(0, 150, 12))
 

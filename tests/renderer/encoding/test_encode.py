@@ -9,7 +9,9 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 
-from renderer.encoding.encode import EncodingError, decode, open_encoder
+from renderer.encoding.decode import as_stored, decode
+from renderer.encoding.encode import open_encoder
+from renderer.encoding.ffmpeg import EncodingError
 
 COLOURS = [(200, 120, 60), (128, 128, 128), (40, 60, 90), (235, 225, 215)]
 
@@ -77,3 +79,13 @@ def test_a_frame_of_another_size_is_refused(tmp_path: Path) -> None:
         open_encoder(tmp_path / "clip.mp4", fps=30, size=(96, 54)) as encoder,
     ):
         encoder.write(np.zeros((64, 64, 3), np.uint8))
+
+
+def test_the_form_alone_keeps_grey_and_halves_the_resolution_of_colour() -> None:
+    grey = np.repeat(np.arange(30, 220, dtype=np.uint8)[None, :, None], 20, axis=0).repeat(
+        3, axis=2
+    )
+    assert np.abs(as_stored(grey).astype(int) - grey).max() <= 1
+    stripes = np.zeros((20, 40, 3), np.uint8)
+    stripes[:, ::2, 0] = 200  # red, black, red: a colour that only every second column has
+    assert np.abs(as_stored(stripes).astype(int) - stripes).mean() > 15

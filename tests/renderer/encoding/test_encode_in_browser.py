@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 from playwright.sync_api import sync_playwright
 
-from renderer.encoding.encode import Box, decode, open_encoder
+from renderer.encoding.decode import decode
+from renderer.encoding.encode import Box, open_encoder
 
 # The corners and thirds of the RGB cube, then iris, sclera, skin and sky.
 COLOURS = [*itertools.product((0, 85, 170, 255), repeat=3)]

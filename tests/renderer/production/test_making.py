@@ -12,9 +12,10 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.encoding.comparison import NOT_ASKED, SAME_LODS
-from renderer.encoding.encode import decode
+from renderer.encoding.comparison import NOT_ASKED, SAME_LODS, SWITCHING
+from renderer.encoding.decode import decode
 from renderer.encoding.flip import WHY_NOT
+from renderer.lod.policy import default_policy
 from renderer.production.making import make_clip
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
@@ -60,31 +61,38 @@ def test_a_soft_clip_holds_both_bounds_and_says_what_it_cost(tmp_path: Path) -> 
     assert record.flip_lods is not None
     assert sum(record.flip_encoding) <= 0.1 * sum(record.flip_lods)
     assert record.flip_note == ""
-    assert source.asked == [("low", 6), ("ultra", 4)]  # nothing is drawn twice
+    assert record.flip_share == pytest.approx(
+        sum(record.flip_encoding) / sum(record.flip_lods), abs=1e-3
+    )
+    assert record.flip_floor is not None
+    assert 0 < record.flip_floor < record.flip_share
+    assert source.asked == [("low", 6), ("ultra", 3)]  # nothing is drawn twice
     assert [path.name for path in tmp_path.iterdir()] == ["clip.mp4"]
 
 
-def test_lods_that_hardly_differ_are_reported_after_finer_attempts(tmp_path: Path) -> None:
+def test_lods_that_hardly_differ_are_reported_with_what_the_form_allows(tmp_path: Path) -> None:
     source = Clouds(step=1, roughness=80)
     record = make_clip(SMALL, tmp_path / "clip.mp4", source=source)
-    assert record.crf == 8.0  # finer by 12, then as fine as it gets
-    assert len(record.missed) == 1
-    assert "of FLIP between its LoDs; at most 0.1 is accepted" in record.missed[0]
-    assert len(source.asked) == 2
+    assert record.flip_floor is not None
+    assert record.flip_floor > 0.1  # no encoding of this form can hold the bound
+    (missed,) = record.missed
+    assert "of FLIP between its LoDs; at most 0.1 is accepted; 8 bits of 4:2:0 alone" in missed
+    assert float(missed.rpartition(" ")[2]) == pytest.approx(record.flip_floor, abs=1e-3)
     assert [path.name for path in tmp_path.iterdir()] == ["clip.mp4"]
 
 
-def test_noise_is_encoded_coarser_until_it_fits(
+def test_noise_is_made_to_fit_while_it_is_encoded(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("renderer.encoding.bounds.MAX_BYTES", 250_000)
-    hard = ClipSpec(left=LOW, right=LOW, width=192, height=108, duration_s=0.4)
-    record = make_clip(hard, tmp_path / "clip.mp4", source=Clouds(roughness=190))
-    assert record.crf is not None
-    assert record.crf > 26
-    assert record.file_bytes <= 50_000 == record.max_bytes
+    hard = ClipSpec(left=LOW, right=LOW, width=192, height=108, duration_s=2.0)
+    source = Clouds(roughness=190)
+    free = make_clip(hard, tmp_path / "free.mp4", source=source, with_flip=False)
+    monkeypatch.setattr("renderer.encoding.bounds.MAX_BYTES", free.file_bytes)
+    record = make_clip(hard, tmp_path / "clip.mp4", source=source, with_flip=False)
+    assert record.max_bytes == round(free.file_bytes * 2 / 5)
+    assert 0.6 * record.max_bytes < record.file_bytes <= record.max_bytes
     assert record.missed == []
-    assert (tmp_path / "clip.mp4").stat().st_size == record.file_bytes
+    assert len(source.asked) == 2
 
 
 def test_what_cannot_fit_is_kept_and_marked(
@@ -126,3 +134,23 @@ def test_flip_that_was_not_measured_is_null_and_says_why(
     monkeypatch.setattr("renderer.encoding.comparison.is_installed", lambda: False)
     record = make_clip(SMALL, tmp_path / "c.mp4", source=source)
     assert (record.flip_encoding, record.flip_note) == (None, WHY_NOT)
+
+
+def test_an_eye_that_switches_has_no_difference_to_be_measured_by(tmp_path: Path) -> None:
+    policy = default_policy()
+    spec = ClipSpec(
+        left=policy.finest,
+        right=policy.finest,
+        left_switching="blended",
+        lod_policy=policy,
+        motion="approach",
+        width=128,
+        height=64,
+        duration_s=0.1,
+    )
+    source = Clouds(step=1)
+    record = make_clip(spec, tmp_path / "clip.mp4", source=source)
+    assert (record.flip_lods, record.flip_share, record.flip_floor) == (None, None, None)
+    assert record.flip_note == SWITCHING
+    assert record.missed == []
+    assert len(source.asked) == 1
