@@ -10,9 +10,10 @@ from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
-from sqlalchemy import func, or_, select
+from sqlalchemy import and_, func, or_, select
 from sqlalchemy.orm import Session
 
+from study.data.completion import COMPLETED, FAILED
 from study.data.database import Database
 from study.data.participants import IDLE, Participant, locked, record_of
 from study.data.readiness import Screen, fitting_sizes, ready_arms
@@ -125,7 +126,11 @@ def _filled(
             ParticipantRow.simulated == simulated,
             ParticipantRow.size.is_not(None),
             or_(
-                ParticipantRow.completed_at.is_not(None),
+                # Whoever failed the study's checks has not filled a place: somebody else may.
+                and_(
+                    ParticipantRow.completed_at.is_not(None),
+                    func.coalesce(ParticipantRow.outcome, COMPLETED) != FAILED,
+                ),
                 ParticipantRow.lease_until > db.now(),
             ),
         )

@@ -21,10 +21,12 @@ from study.data.refusals import NotReachedError
 from study.data.schema import EventRow, ParticipantRow, TrialRow
 from study.data.studies import by_id
 from study.data.trials import ANSWERED
+from study.data.validity import tally
 from study.design.completion import GENERATED, NO_CODE
 from study.design.definition import StudyDefinition
 
 COMPLETED: Final = "completed"
+FAILED: Final = "failed_checks"
 _ALPHABET: Final = "ABCDEFGHJKMNPQRSTVWXYZ23456789"  # nothing that reads like something else
 
 
@@ -45,7 +47,10 @@ def complete(db: Database, session: Session, row: ParticipantRow) -> None:
         return
     definition = by_id(db, row.study_id).definition
     row.completed_at = db.now()
-    _end(session, row, definition, outcome=COMPLETED)
+    found = tally(session, row.id, definition)
+    failed = {"attention": found.attention_failed, "gold": found.gold_failed}
+    outcome = FAILED if definition.endings.rule.is_failed(**failed) else COMPLETED
+    _end(session, row, definition, outcome=outcome)
 
 
 def _is_all_stored(session: Session, row: ParticipantRow) -> bool:
