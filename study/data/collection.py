@@ -9,6 +9,7 @@ from typing import Any
 
 from sqlalchemy import select
 
+from study.data.checks import CHECKS, done_in
 from study.data.database import Database
 from study.data.progress import ABOUT
 from study.data.schema import EventRow, ParticipantRow, SessionRow, TrialRow
@@ -28,10 +29,15 @@ class CollectedTrial:
 
 @dataclass(frozen=True)
 class Collected:
-    """One participant with everything stored about them."""
+    """One participant with everything stored about them.
+
+    ``checks`` holds report and facts of every check before the clips that is ``done``.
+    """
 
     row: ParticipantRow
     device: dict[str, Any]
+    done: frozenset[str]
+    checks: dict[str, dict[str, Any]]
     sittings: int
     about: dict[str, Value | None]
     trials: Sequence[CollectedTrial]
@@ -59,10 +65,11 @@ def collect(db: Database, study: Study) -> list[Collected]:
         events = session.scalars(
             select(EventRow).where(EventRow.participant_id.in_(mine)).order_by(EventRow.id)
         ).all()
-    return _together(people, sittings, trials, events)
+    return _together(study, people, sittings, trials, events)
 
 
 def _together(
+    study: Study,
     people: Sequence[ParticipantRow],
     sittings: Sequence[SessionRow],
     trials: Sequence[TrialRow],
@@ -70,7 +77,10 @@ def _together(
 ) -> list[Collected]:
     by_trial: dict[int, list[EventRow]] = defaultdict(list)
     about: dict[int, dict[str, Value | None]] = defaultdict(dict)
+    others: dict[int, list[tuple[str, dict[str, Any]]]] = defaultdict(list)
     for event in events:
+        if event.trial_id is None:
+            others[event.participant_id].append((event.kind, event.payload))
         if event.trial_id is not None:
             by_trial[event.trial_id].append(event)
         elif event.kind == ABOUT:
@@ -90,6 +100,8 @@ def _together(
         Collected(
             row=person,
             device=own[person.id][-1].device if own[person.id] else {},
+            done=done_in(others[person.id], study.definition),
+            checks={kind: given for kind, given in others[person.id] if kind in CHECKS},
             sittings=len(own[person.id]),
             about=about[person.id],
             trials=by_person[person.id],

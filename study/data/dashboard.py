@@ -83,7 +83,7 @@ def summary(db: Database, study: Study) -> Overview:
 
 def _person(study: Study, one: Collected, now: datetime) -> Person:
     row = one.row
-    step, number, total = early_step(row, study.definition), 0, 0
+    step, number, total = early_step(row, study.definition, one.done), 0, 0
     if step is None:
         open_trial = next((c.trial for c in one.trials if not c.trial.is_complete), None)
         if open_trial is None:

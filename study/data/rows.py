@@ -10,7 +10,7 @@ from datetime import datetime
 from typing import Any, Final
 
 from renderer.detail import lod_rank
-from study.data import devices
+from study.data import angles, devices
 from study.data.collection import Collected, CollectedTrial
 from study.data.devices import plausible
 from study.data.progress import early_step
@@ -39,6 +39,8 @@ def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row
     trial, row = collected.trial, person.row
     plays = complete_plays(trial.completed_at, collected.events)
     clip = study.definition.clip(trial.clip)
+    left_px, right_px = _iris_px(study.definition, person, collected)
+    width_px, calibration = read_size(row.size or "").width, person.checks.get("calibration")
     verdict = judge_trial(plays, study.definition.certificate)
     return {
         **_who(study, person),
@@ -47,7 +49,7 @@ def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row
         "position": trial.number,
         "clip": trial.clip,
         "distance": clip.distance,
-        "shown_scale": _last(plays, "shown_scale"),
+        **angles.shown(plays, width_px=width_px),
         "orbit_direction": row.orbit_direction,
         "is_practice": trial.is_practice,
         "is_catch": clip.is_catch,
@@ -57,7 +59,11 @@ def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row
         "views": trial.views,
         **_response(collected),
         "started_at": _iso(trial.started_at),
-        "_iris_px": _iris_px(study.definition, person, collected),
+        "_iris_px": (left_px, right_px),
+        "_iris_deg": [
+            angles.iris_angle(plays, calibration, iris_px=iris_px, width_px=width_px)
+            for iris_px in (left_px, right_px, (left_px + right_px) / 2)
+        ],
     }
 
 
@@ -70,6 +76,7 @@ def rating_rows(
         yield {
             **shared,
             "iris_px": shared["_iris_px"][index],
+            **shared["_iris_deg"][index],
             "eye": eye,
             "lod": lods[eye],
             "lod_rank": lod_rank(lods[eye]),
@@ -84,6 +91,7 @@ def comparison_row(definition: StudyDefinition, shared: Row, collected: Collecte
     return {
         **shared,
         "iris_px": round(sum(shared["_iris_px"]) / 2, 2),
+        **shared["_iris_deg"][2],
         "left_lod": clip.left,
         "right_lod": clip.right,
         **collected.trial.answers,
@@ -92,7 +100,7 @@ def comparison_row(definition: StudyDefinition, shared: Row, collected: Collecte
 
 def participant_row(study: Study, person: Collected) -> Row:
     row = person.row
-    step = early_step(row, study.definition)
+    step = early_step(row, study.definition, person.done)
     done = sum(c.trial.is_complete and not c.trial.is_practice for c in person.trials)
     return {
         **_who(study, person),
@@ -101,6 +109,7 @@ def participant_row(study: Study, person: Collected) -> Row:
         "status": COMPLETED if row.completed_at else step or f"{done} trials",
         **person.about,
         **{name: person.device.get(name) for name in devices.COLUMNS},
+        **{name: fact for check in person.checks.values() for name, fact in check["facts"].items()},
         "arm": f"{row.size} {row.orbit_direction}" if row.size else None,
     }
 
@@ -126,11 +135,6 @@ def _response(collected: CollectedTrial) -> Row:
         "response_ms": None if found is None else round(found),
         "clock_ms": None if found is None else plausible(last.get("clock_ms")),
     }
-
-
-def _last(plays: Sequence[Mapping[str, Any]], name: str) -> float | None:
-    values = [value for play in plays if (value := plausible(play.get(name))) is not None]
-    return values[-1] if values else None
 
 
 def _total(plays: Sequence[Mapping[str, Any]], name: str) -> int | None:

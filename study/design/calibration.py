@@ -120,14 +120,15 @@ def _check(
         )
 
 
-def is_same_screen(
-    report: CalibrationReport, *, screen_width_px: float, pixel_ratio: float
-) -> bool:
-    """Say whether a play was on the screen that was measured, by its width and pixel ratio.
+ScreenWidth = tuple[float, float]
+"""A screen's width in device pixels as a browser tells it, and its pixel ratio."""
+
+
+def is_same_screen(before: ScreenWidth, now: ScreenWidth) -> bool:
+    """Say whether something was shown on the screen that was measured before.
 
     Browsers differ in what zooming changes: the width in CSS pixels stays (Chromium, Safari), or
     the product of both does (Firefox). On another screen neither is as it was.
     """
-    before = (report.screen_width_px / report.pixel_ratio, report.screen_width_px)
-    now = (screen_width_px / pixel_ratio, screen_width_px)
-    return any(abs(a - b) <= 0.01 * b for a, b in zip(now, before, strict=True))
+    widths = [(width_px / ratio, width_px) for width_px, ratio in (before, now)]
+    return any(abs(a - b) <= 0.01 * a for a, b in zip(*widths, strict=True))

@@ -5,6 +5,7 @@ Pure. The clip shows PATCHES as flat squares; the strips show steps close to bla
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from typing import Final, Literal
 
@@ -23,6 +24,13 @@ PATCH_PX: Final = 48  # the side of a square
 COLUMNS: Final = 6
 CLIP_FPS: Final = 30
 CLIP_FRAMES: Final = 15
+
+
+def self_test_name() -> str:
+    """Return the file name of the clip that shows PATCHES; another clip has another name."""
+    told = f"{PATCHES} {PATCH_PX} {COLUMNS} {CLIP_FPS} {CLIP_FRAMES}"
+    return f"self-test-{hashlib.sha256(told.encode()).hexdigest()[:12]}.mp4"
+
 
 STEPS: Final = (3, 6, 10, 15, 22)
 """How far from black or white the squares of a strip lie, in steps of 255."""
