@@ -18,10 +18,10 @@ import numpy as np
 
 from analysis import Answer, Observer, Stimulus, draw_observer
 from renderer.manifest import read_manifest
+from study.answering import about_answers, attention_answer, stimulus, trial_answers
 from study.browser import BotError, Browser
 from study.design.definition import StudyDefinition
 from study.design.questions import Value
-from study.simulate import about_answers, stimulus, trial_answers
 from study.site.media import clip_url
 
 
@@ -77,8 +77,11 @@ def take_part(
         browser.post("/about-you", _filled(about_answers(definition, observer, rng)))
     browser.post("/instructions", {})
     _prepare(browser, definition)
-    while browser.page.path.startswith("/trial/"):
-        _rate(browser, definition, observer=observer, seen=seen, rng=rng)
+    while browser.page.path.startswith(("/trial/", "/pause")):
+        if browser.page.path == "/pause":
+            _pause(browser, definition, observer, rng)
+        else:
+            _rate(browser, definition, observer=observer, seen=seen, rng=rng)
     if not browser.page.completion_code:
         raise BotError(f"{browser.page.path}: a simulated participant got no completion code")
     return browser.page.completion_code
@@ -101,6 +104,19 @@ def _prepare(browser: Browser, definition: StudyDefinition) -> None:
         if len(browser.read(request)) != 2:
             raise BotError(f"{clip['url']}: the site does not serve byte ranges")
     browser.post("/preparing", {**screen, "pixel_ratio": 1})
+
+
+def _pause(
+    browser: Browser, definition: StudyDefinition, observer: Observer, rng: np.random.Generator
+) -> None:
+    """Rest for no time at all, or answer the question that stands between trials."""
+    name = browser.page.hidden["pause"]
+    pause = next(one for one in definition.pauses if one.key == name)
+    browser.post("/pause", _filled(attention_answer(pause.attention, observer, rng)))
+    if browser.page.hidden.get("pause") == name:
+        raise BotError(
+            f"/pause: the site did not take what a simulated participant answered: {name}"
+        )
 
 
 def _rate(

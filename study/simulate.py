@@ -5,28 +5,20 @@ Their answers come from ``analysis.observers`` and are marked as simulated where
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
-from analysis.observers import Answer, Observer, Stimulus, draw_observer
-from study.data import answers, arms, studies, trials, views
+from analysis.observers import Answer, Observer, draw_observer
+from study.answering import about_answers, attention_answer, stimulus, trial_answers
+from study.data import answers, arms, pauses, studies, trials, views
 from study.data import progress as steps
 from study.data.database import Database
 from study.data.participants import Participant, enrol
 from study.data.studies import Study
 from study.data.trials import Trial
-from study.design.definition import StudyDefinition
-from study.design.parts import read_size
-from study.design.pixels import median_iris_px
-from study.design.questions import (
-    NumberQuestion,
-    Question,
-    TextQuestion,
-    Value,
-    accepted_values,
-)
 from study.design.arms import all_arms
+from study.design.definition import StudyDefinition
 
 
 def simulate(
@@ -71,6 +63,18 @@ def _take_part(db: Database, study: Study, rng: np.random.Generator) -> None:
         )
         answer = observer.answer(seen, rng, position=trial.number)
         _store(db, leased, definition, trial=trial, answer=answer, rng=rng)
+        if not trial.is_practice:
+            _pause(db, leased, observer, after=trial.number, rng=rng)
+
+
+def _pause(
+    db: Database, person: Participant, observer: Observer, *, after: int, rng: np.random.Generator
+) -> None:
+    """Rest, or answer the question between trials, where the study has one after so many."""
+    for pause in studies.by_id(db, person.study_id).definition.pauses:
+        if pause.after == after:
+            given = attention_answer(pause.attention, observer, rng)
+            pauses.finish(db, person, pause.key, given)
 
 
 def _store(
@@ -109,61 +113,3 @@ _DEVICE = {
     "pixel_ratio": 1.0,
     "user_agent_family": "simulated",
 }
-
-
-def stimulus(definition: StudyDefinition, clip_id: str, *, size: str, orbit: str) -> Stimulus:
-    """Return what an observer sees in a clip at a size such as "1280x720"."""
-    clip = definition.clip(clip_id)
-    spec = definition.clip_spec(clip, size=read_size(size), orbit_direction=orbit)
-    return Stimulus(
-        distance=clip.distance,
-        iris_px=sum(median_iris_px(spec)) / 2,
-        left_lod=clip.left,
-        right_lod=clip.right,
-        left_levels=definition.detail(clip.left).levels(),
-        right_levels=definition.detail(clip.right).levels(),
-    )
-
-
-def about_answers(
-    definition: StudyDefinition, observer: Observer, rng: np.random.Generator
-) -> dict[str, Value | None]:
-    """Answer a study's questions about the participant."""
-    choices = {q.id: [str(v) for v in accepted_values(q)] for q in definition.about}
-    known = observer.about_you(rng, {name: values for name, values in choices.items() if values})
-    return {q.id: _fitting(q, known.get(q.id), rng) for q in definition.about}
-
-
-def trial_answers(
-    questions: Sequence[Question], answer: Answer, rng: np.random.Generator
-) -> dict[str, Value | None]:
-    """Put an observer's answer into a study's questions; of other questions answers are drawn."""
-    known: dict[str, Value | None] = {
-        "rating_left": answer.left_rating,
-        "rating_right": answer.right_rating,
-        "comparison": answer.comparison,
-        "noticed": answer.noticed,
-        "what_differed": answer.what_differed,
-        "comments": answer.comments,
-    }
-    return {
-        q.id: known[q.id]
-        if q.id in known and not (q.is_required and known[q.id] is None)
-        else _fitting(q, None, rng)
-        for q in questions
-    }
-
-
-def _fitting(question: Question, known: Value | None, rng: np.random.Generator) -> Value | None:
-    """Return ``known`` if the question takes it, else an answer drawn from what it takes."""
-    values = accepted_values(question)
-    if values:
-        return known if known in values else values[int(rng.integers(len(values)))]
-    if isinstance(question, NumberQuestion):
-        low, high = question.minimum, question.maximum
-        return (
-            min(high, max(low, int(known)))
-            if isinstance(known, int)
-            else int(rng.integers(low, high + 1))
-        )
-    return str(known) if isinstance(question, TextQuestion) and known is not None else None
