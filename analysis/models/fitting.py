@@ -28,7 +28,7 @@ Floats = NDArray[np.float64]
 _START_SD: Final[Mapping[str, float]] = {LENIENCY: 0.5, INCONSISTENCY: 0.2, STYLE: 0.2}
 _STEP: Final = 1e-5  # of the gradient's differences: its own error is about 1e-10
 _GRID_TOLERANCE: Final = 1e-3  # in log-likelihood, between a grid and one twice as fine
-_MOST_NODES: Final = 1281
+_MOST_NODES, _MOST_CELLS = 1281, 60_000  # in one direction, and in all
 
 
 @dataclass(frozen=True)
@@ -132,9 +132,9 @@ def fit(
         )
         if better is None:
             break
-        if max(better.counts) > _MOST_NODES:
+        if max(better.counts) > _MOST_NODES or better.log_weights.size > _MOST_CELLS:
             warnings.append(
-                f"the integration grid stops at {max(grid.counts)} nodes; "
+                f"the integration grid stops at {max(grid.counts)} nodes in a direction; "
                 "people gave so many answers that it should be finer"
             )
             break

@@ -27,13 +27,11 @@ class Grid:
     log_weights: Floats
     counts: tuple[int, ...]
 
-    def doubled(self) -> Grid:
-        """Return the grid with half the spacing in every direction."""
-        return normal_grid([2 * count - 1 if count > 1 else 1 for count in self.counts])
-
 
 def normal_grid(counts: Sequence[int]) -> Grid:
     """Return the product grid with ``counts[i]`` nodes for effect i; one node stands at zero."""
+    if not counts:  # no person effect: all people alike
+        return Grid(np.zeros((0, 1)), np.zeros(1), ())
     axes = [_axis(count) for count in counts]
     nodes = np.meshgrid(*(axis[0] for axis in axes), indexing="ij")
     logs: Floats = reduce(np.add.outer, (axis[1] for axis in axes), np.zeros(()))
