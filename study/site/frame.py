@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from study.data.participants import IDLE
 from study.data.studies import Study
 from study.site.access import Visitor
 from study.site.language import language_of
@@ -26,8 +27,10 @@ def shared(
         "study_title": study.title,
         "language": language,
         "direction": tongue(language).direction,
+        "languages": [tongue(one) for one in study.languages],
         "text": words.markup,
         "script_texts": words.of_scripts(page),
         "contact": study.definition.contact,
+        "release_s": int(IDLE.total_seconds()),
         "resume_url": visitor.resume_url if visitor else "",
     }
