@@ -168,7 +168,7 @@ def free_port() -> int:
 @pytest.mark.parametrize(
     ("address", "words"),
     [
-        (f"tcp://127.0.0.1:{free_port()}", "no Dask scheduler answers there"),
+        ("tcp://127.0.0.1:{port}", "no Dask scheduler answers there"),
         ("render-farm", "no address (missing port number in address 'render-farm')"),
         ("http://127.0.0.1:1", "no address (unknown address scheme 'http'"),
     ],
@@ -181,6 +181,7 @@ def test_an_address_where_no_scheduler_listens_is_one_line(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(clusters, "ANSWER_S", 0.5)
+    address = address.format(port=free_port())
     assert main(["render", "--scheduler", address, "--out", str(tmp_path / "clips")]) == 1
     out, err = capsys.readouterr()
     assert out == ""
