@@ -1,12 +1,11 @@
-// The participant's pages: one outbox and one store of clips for as long as the document lives.
+// The participant's pages: one store of clips for as long as the document lives, one tab at a time.
 
-import { Outbox } from "./outbox.js";
 import { ClipStore } from "./preload.js";
 import { startAbout } from "./about.js";
 import { startNext, startStop } from "./leaving.js";
 import { startPause } from "./pause.js";
 import { startPreparing } from "./preparing.js";
-import { text } from "./texts.js";
+import { currentSession } from "./sessions.js";
 import { startTrial } from "./trial.js";
 
 const PAGES = {
@@ -17,48 +16,37 @@ const PAGES = {
   next: startNext,
   stop: startStop,
 };
+const FREE = new Set(["next", "stop"]); // pages that any tab may show
 const clips = new ClipStore();
-const outboxes = new Map(); // session -> Outbox
 let close = () => {};
+let isElsewhere = false;
 
 start();
 addEventListener("pageshow", (event) => event.persisted && location.reload());
 
 function start() {
   close();
+  close = () => {};
   const main = document.querySelector("main");
-  const outbox = currentOutbox();
-  close = PAGES[main.dataset.page]?.(main, { outbox, clips, start }) ?? (() => {});
-  outbox?.send();
+  const { page } = main.dataset;
+  const session = currentSession({ onLost: goElsewhere, isElsewhere: () => isElsewhere });
+  if (session && PAGES[page] && !FREE.has(page) && !session.tab.claim()) return goElsewhere();
+  close = PAGES[page]?.(main, { outbox: session?.outbox ?? null, clips, start }) ?? close;
+  session?.outbox.send();
 }
 
-function currentOutbox() {
-  const { session, csrf, events } = document.body.dataset;
-  if (!session) return null;
-  if (!outboxes.has(session)) {
-    outboxes.set(
-      session,
-      new Outbox(session, { url: events, csrf, onChange: showSaved, onRefused: refused }),
-    );
-  }
-  return outboxes.get(session);
-}
-
-/** Say in the strip whether everything is stored. */
-function showSaved({ waiting, failed }) {
-  const line = document.querySelector(".saved");
-  if (!line) return;
-  const state = !waiting ? "saved" : failed ? "waiting" : "saving";
-  if (line.dataset.state === state) return;
-  line.dataset.state = state;
-  line.querySelector("[role=status]").textContent = {
-    saved: text("all.saved"),
-    saving: text("all.saving"),
-    waiting: text("all.not_saved"),
-  }[state];
-}
-
-/** The server will never take this entry: it belongs to a trial that is over. Show where we are. */
-function refused(entry, answer) {
-  if (answer.status === 409) location.reload();
+/** Another tab takes part: this one says so, keeps still, and takes over when asked or when it may. */
+function goElsewhere() {
+  if (isElsewhere) return;
+  isElsewhere = true;
+  close();
+  close = () => {};
+  const notice = document.querySelector("[data-elsewhere]");
+  for (const part of document.querySelectorAll("header, main")) part.hidden = true;
+  notice.hidden = false;
+  notice.querySelector("[data-here]").addEventListener("click", () => {
+    currentSession({}).tab.take();
+    location.reload();
+  });
+  notice.querySelector("h1").focus();
 }

@@ -4,13 +4,23 @@
 // resamples the stimulus. The curtain, in the surround's grey, covers the video except while a frame
 // of a running play is on the screen.
 
+import { PlayRecord } from "./certificate.js";
 import { enterFullscreen, screenFacts, watchScreen } from "./screen.js";
+
+const STUCK_MS = 10000; // without progress for so long a play is given up
+
+const nextFrame = () =>
+  new Promise((resolve) => {
+    requestAnimationFrame(resolve);
+    setTimeout(resolve, 200); // no frames come to a page that nobody sees
+  });
 
 export class Player {
   /**
    * @param {HTMLElement} stage
    * @param {{width: number, height: number, frames: number,
-   *          onFirstFrame: () => void, onPlay: (play: object) => void,
+   *          onStart: () => void, onFirstFrame: (shown_ms: number) => void,
+   *          onPlay: (play: object) => void,
    *          onBroken: (code: string) => void, onTooSmall: () => void}} options
    */
   constructor(stage, options) {
@@ -19,9 +29,13 @@ export class Player {
     this.video = stage.querySelector("video");
     this.isWatched = false;
     this.unwatchScreen = watchScreen(() => this.layOut());
-    this.hiding = () => document.hidden && this.interrupt();
-    document.addEventListener("visibilitychange", this.hiding);
-    this.video.addEventListener("ended", () => this.end());
+    this.stop = new AbortController();
+    const on = (target, name, act) => target.addEventListener(name, act, { signal: this.stop.signal });
+    on(document, "visibilitychange", () => document.hidden && this.interrupt("hidden"));
+    on(window, "pagehide", () => this.interrupt("left"));
+    on(this.video, "ended", () => this.end());
+    // Keys of the keyboard and power savers may pause a video; there is no control to go on with.
+    on(this.video, "pause", () => this.video.ended || this.interrupt("paused"));
     for (const button of stage.querySelectorAll("[data-play]")) {
       button.addEventListener("click", () => this.play());
     }
@@ -30,8 +44,9 @@ export class Player {
 
   /** Leave the stage for good. */
   close() {
+    this.interrupt("left");
     this.unwatchScreen();
-    document.removeEventListener("visibilitychange", this.hiding);
+    this.stop.abort();
     delete document.documentElement.dataset.view;
     this.video.removeAttribute("src");
     this.video.load();
@@ -45,10 +60,14 @@ export class Player {
     return this.stage.dataset.state;
   }
 
-  /** Take a clip's address; the Play button appears once its first frame can be decoded. */
-  async open(url, source) {
+  /**
+   * Take a clip's address; the Play button appears once its first frame can be decoded.
+   * @param {object} facts  what every record of a play of this clip says of it
+   */
+  async open(url, facts) {
     this.state = "loading";
-    this.source = source;
+    this.facts = facts;
+    this.decoded = 0;
     await new Promise((resolve, reject) => {
       this.video.addEventListener("loadeddata", resolve, { once: true });
       this.video.addEventListener("error", () => reject(this.video.error), { once: true });
@@ -95,6 +114,7 @@ export class Player {
   }
 
   async play() {
+    if (this.record || this.state === "starting") return; // a double click plays once
     this.show();
     if (!this.fits) await this.takeTheScreen();
     if (!this.fits) {
@@ -103,13 +123,23 @@ export class Player {
     }
     this.layOut();
     this.state = "starting";
-    this.begin();
+    this.options.onStart();
     try {
-      this.video.currentTime = 0;
+      await this.rewind();
+      this.begin();
       await this.video.play();
     } catch (error) {
-      if (this.current) this.options.onBroken(`PLAY-${error.name}`);
+      if (this.record) this.options.onBroken(`PLAY-${error.name}`);
     }
+  }
+
+  async rewind() {
+    if (this.video.currentTime === 0) return;
+    const isThere = new Promise((resolve) =>
+      this.video.addEventListener("seeked", resolve, { once: true }),
+    );
+    this.video.currentTime = 0;
+    await isThere;
   }
 
   /** Ask for full screen and wait until the window has its new size. */
@@ -122,69 +152,43 @@ export class Player {
 
   /** Start the record of one play. */
   begin() {
-    this.current = {
-      started_at: new Date().toISOString(),
-      quality: this.video.getVideoPlaybackQuality?.(),
-      first: null,
-      last: null,
-      shownAt: null,
-    };
-    if (this.video.requestVideoFrameCallback) this.countFrames(this.current);
-    else this.video.addEventListener("timeupdate", () => this.raiseCurtain(), { once: true });
-  }
-
-  /** presentedFrames counts frames handed to the screen, also those whose callback was missed. */
-  countFrames(play) {
-    this.video.requestVideoFrameCallback((now, { presentedFrames }) => {
-      if (this.current !== play) return;
-      play.first ??= presentedFrames;
-      play.last = presentedFrames;
-      if (play.shownAt === null) this.raiseCurtain();
-      this.countFrames(play);
+    this.record = new PlayRecord(this.video, {
+      frames: this.options.frames,
+      decoded: this.decoded,
+      onFirstFrame: (shown_ms) => {
+        this.state = "playing";
+        this.options.onFirstFrame(shown_ms);
+      },
     });
+    let place = -1;
+    this.watchdog = setInterval(() => {
+      if (this.video.currentTime === place) this.interrupt("stuck");
+      place = this.video.currentTime;
+    }, STUCK_MS);
   }
 
-  raiseCurtain() {
-    if (!this.current || this.current.shownAt !== null) return;
-    this.current.shownAt = performance.now();
-    this.state = "playing";
-    this.options.onFirstFrame();
+  /** A play that ran to its end: its last frame's callback may come after the event. */
+  async end() {
+    const { record } = this;
+    if (!record) return;
+    await nextFrame();
+    await nextFrame();
+    if (this.record === record) this.finish("end", "watched");
   }
 
-  /** A play that ran to its end. */
-  end() {
-    if (!this.current) return;
-    const play = this.finish(true);
-    this.state = "watched";
-    this.options.onPlay(play);
-  }
-
-  /** A play that cannot count: the page was covered while the clip ran. */
-  interrupt() {
-    if (!this.current) return;
+  /** A play that cannot count: the page was covered or left, or the clip stood still. */
+  interrupt(reason) {
+    if (!this.record) return;
+    this.finish(reason, "interrupted");
     this.video.pause();
-    const play = this.finish(false);
-    this.state = "interrupted";
-    this.options.onPlay(play);
   }
 
-  finish(isComplete) {
-    const play = this.current;
-    this.current = null;
-    const before = play.quality;
-    const after = this.video.getVideoPlaybackQuality?.();
-    const shown = this.video.getBoundingClientRect().width * devicePixelRatio;
-    return {
-      is_complete: isComplete,
-      was_hidden: document.hidden,
-      source: this.source,
-      started_at: play.started_at,
-      duration_ms: play.shownAt === null ? null : Math.round(performance.now() - play.shownAt),
-      expected_frames: this.options.frames,
-      presented_frames: play.first === null ? null : play.last - play.first + 1,
-      dropped_frames: after ? after.droppedVideoFrames - before.droppedVideoFrames : null,
-      shown_scale: Math.round((shown / this.options.width) * 1e4) / 1e4,
-      ...screenFacts(),
-    };
+  finish(endedBy, state) {
+    clearInterval(this.watchdog);
+    const play = { ...this.record.finish(endedBy), ...this.facts };
+    this.record = null;
+    this.decoded = this.video.getVideoPlaybackQuality?.().totalVideoFrames ?? 0;
+    this.state = state;
+    this.options.onPlay(play);
   }
 }

@@ -1,46 +1,78 @@
-// Clips into memory: fetch -> length check -> typed Blob -> object URL.
+// Clips in memory: the one that is shown and the next few, as typed blobs under object URLs.
 //
-// At most three downloads run at once; each is tried again with growing pauses; progress is reported
-// in bytes. Nothing here can wait for ever without saying so: a download that brings no byte for
-// STALL_MS is cut and tried again, and after the last try the caller hears of it.
+// At most three downloads run at once; each is tried again with growing pauses; progress is counted in
+// bytes. Nothing here waits for ever without saying so: after the last try the caller hears of it.
 
+import { download } from "./download.js";
+
+export const AHEAD = 3; // so many clips are held beside the one that is shown
 const AT_ONCE = 3;
 const TRIES = 4;
-const STALL_MS = 20000;
 const PAUSES_MS = [500, 1500, 4000];
 
+/** @typedef {{url: string, bytes: number}} Clip */
+/** @typedef {{address: string, sha256: string, codec: string}} Held  address: of the blob */
+
 export class ClipStore {
-  constructor() {
-    this.clips = new Map(); // url -> Promise<string> (object URL)
+  constructor({ stall_ms } = {}) {
+    this.stall_ms = stall_ms;
+    this.held = new Map(); // url -> {held: Promise<Held>, stop: AbortController}
     this.loaded = new Map(); // url -> bytes so far
     this.queue = [];
     this.running = 0;
+    this.quiet = Promise.resolve();
     this.onProgress = () => {};
   }
 
   /** Load a clip, or return the load that already runs. Rejects after the last try. */
-  load({ url, bytes }) {
-    if (!this.clips.has(url)) {
-      const load = new Promise((resolve, reject) => this.queue.push({ url, bytes, resolve, reject }));
-      load.catch(() => this.clips.delete(url)); // a failed load may be asked for again
-      this.clips.set(url, load);
+  load(clip) {
+    const { url } = clip;
+    if (!this.held.has(url)) {
+      const stop = new AbortController();
+      const held = new Promise((resolve, reject) =>
+        this.queue.push({ clip, signal: stop.signal, resolve, reject }),
+      );
+      const entry = { held, stop };
+      // A failed load may be asked for again.
+      held.catch(() => this.held.get(url) === entry && this.held.delete(url));
+      this.held.set(url, entry);
       this.next();
     }
-    return this.clips.get(url);
+    return this.held.get(url).held;
   }
 
   /** Load a clip before all others that still wait in line. */
   loadFirst(clip) {
-    const place = this.queue.findIndex((waiting) => waiting.url === clip.url);
+    const place = this.queue.findIndex((waiting) => waiting.clip.url === clip.url);
     if (place > 0) this.queue.unshift(...this.queue.splice(place, 1));
     return this.load(clip);
   }
 
-  /** Give the memory of a clip back. */
+  /** Hold these clips and no others: the memory of the rest is given back. */
+  keepOnly(clips) {
+    const wanted = new Set(clips.map((clip) => clip.url));
+    for (const url of [...this.held.keys()]) if (!wanted.has(url)) this.forget(url);
+  }
+
+  /** Give the memory of a clip back, or stop its download. */
   forget(url) {
-    this.clips.get(url)?.then(URL.revokeObjectURL, () => {});
-    this.clips.delete(url);
+    const entry = this.held.get(url);
+    if (!entry) return;
+    this.held.delete(url);
     this.loaded.delete(url);
+    this.queue = this.queue.filter((job) => job.signal !== entry.stop.signal);
+    entry.stop.abort();
+    entry.held.then(
+      ({ address }) => URL.revokeObjectURL(address),
+      () => {},
+    );
+  }
+
+  /** Read nothing more until the returned function is called: a clip is on the screen. */
+  hush() {
+    let release;
+    this.quiet = new Promise((resolve) => (release = resolve));
+    return release;
   }
 
   /** Bytes received so far of these clips. */
@@ -61,44 +93,25 @@ export class ClipStore {
     }
   }
 
-  async fetchPatiently(job) {
+  async fetchPatiently({ clip, signal }) {
     for (let attempt = 1; ; attempt += 1) {
       try {
-        return await this.fetchOnce(job);
+        const { blob, ...facts } = await download(clip, {
+          isAgain: attempt > 1,
+          isQuiet: () => this.quiet,
+          onBytes: (count) => signal.aborted || this.progress(clip.url, count),
+          signal,
+          stall_ms: this.stall_ms,
+        });
+        return { ...facts, address: URL.createObjectURL(blob) };
       } catch (error) {
-        this.progress(job.url, 0);
+        if (signal.aborted) throw error;
+        this.progress(clip.url, 0);
         if (attempt === TRIES || error.isFinal) throw error;
-        await new Promise((resolve) => setTimeout(resolve, PAUSES_MS[attempt - 1]));
+        // Not all browsers of a room at the same moment.
+        const pause_ms = PAUSES_MS[attempt - 1] * (0.75 + Math.random() / 2);
+        await new Promise((resolve) => setTimeout(resolve, pause_ms));
       }
-    }
-  }
-
-  async fetchOnce({ url, bytes }) {
-    const controller = new AbortController();
-    let timer = setTimeout(() => controller.abort(), STALL_MS);
-    try {
-      const answer = await fetch(url, { signal: controller.signal });
-      if (!answer.ok) {
-        // "Not there" does not change within seconds: let the participant decide when to try again.
-        const isFinal = answer.status >= 400 && answer.status < 500;
-        throw Object.assign(new Error(`HTTP-${answer.status}`), { isFinal });
-      }
-      const parts = [];
-      let count = 0;
-      for (const reader = answer.body.getReader(); ; ) {
-        const { done, value } = await reader.read();
-        if (done) break;
-        clearTimeout(timer);
-        timer = setTimeout(() => controller.abort(), STALL_MS);
-        parts.push(value);
-        count += value.byteLength;
-        this.progress(url, count);
-      }
-      if (count !== bytes) throw new Error(`LENGTH-${count}`);
-      // The type matters: Safari does not play an untyped blob.
-      return URL.createObjectURL(new Blob(parts, { type: "video/mp4" }));
-    } finally {
-      clearTimeout(timer);
     }
   }
 

@@ -1,8 +1,9 @@
 // Waiting for the clips: first for them to be rendered, then for them to reach this browser.
 
+import { amountText } from "./amount.js";
 import { fetchPatiently, submitPatiently } from "./navigate.js";
+import { AHEAD } from "./preload.js";
 import { enterFullscreen, screenFacts } from "./screen.js";
-import { text } from "./texts.js";
 
 const POLL_MS = 2000;
 
@@ -61,15 +62,18 @@ export function startPreparing(main, { clips, start }) {
   async function load(list) {
     wanted = Array.isArray(list) ? list : wanted;
     show("loading");
-    const total = wanted.reduce((sum, clip) => sum + clip.bytes, 0);
-    const percent = main.querySelector("[data-percent]");
+    // The others follow while these are watched.
+    const first = wanted.slice(0, 1 + AHEAD);
+    const total = first.reduce((sum, clip) => sum + clip.bytes, 0);
+    const amount = main.querySelector("[data-amount]");
+    clips.keepOnly(first);
     clips.onProgress = () => {
-      const share = Math.min(1, clips.bytesOf(wanted) / total);
-      meter.value = share;
-      percent.textContent = text("preparing.percent", { percent: Math.floor(100 * share) });
+      const bytes = clips.bytesOf(first);
+      meter.value = Math.min(1, bytes / total);
+      amount.textContent = amountText(bytes, total);
     };
     try {
-      await Promise.all(wanted.map((clip) => clips.load(clip)));
+      await Promise.all(first.map((clip) => clips.load(clip)));
       meter.value = 1;
       show("ready");
       button.focus({ preventScroll: true });

@@ -9,8 +9,13 @@ export function screenFacts() {
     viewport_width_px: Math.round(document.documentElement.clientWidth * ratio),
     viewport_height_px: Math.round(innerHeight * ratio),
     device_pixel_ratio: ratio,
-    is_fullscreen: document.fullscreenElement !== null,
+    is_fullscreen: !isWindowed(),
   };
+}
+
+/** True unless the page fills the screen, by script or by the key F11. */
+export function isWindowed() {
+  return !document.fullscreenElement && !matchMedia("(display-mode: fullscreen)").matches;
 }
 
 /** Call `changed` when the page moves to a screen of another pixel ratio, zooms or is resized. */

@@ -1,92 +1,71 @@
 // The page of one trial: a clip, then its questions.
 
+import { clockStep_ms, firstFrameClock } from "./clock.js";
+import { Draft } from "./draft.js";
+import { Keep } from "./keep.js";
 import { submitPatiently } from "./navigate.js";
-import { Player } from "./player.js";
 import { Questionnaire } from "./questionnaire.js";
 import { text } from "./texts.js";
+import { startWatching } from "./watching.js";
 
 /** Start the page; returns the function that ends it. */
 export function startTrial(main, { outbox, clips, start }) {
-  const stage = main.querySelector(".stage");
   const form = main.querySelector(".questions form");
-  const { clip: url } = main.dataset;
-  const number = (name) => Number(main.dataset[name]);
-  const position = number("position");
-  const clip = { url, bytes: number("bytes") };
+  const { session } = document.body.dataset;
+  const position = Number(main.dataset.position);
+  const clock = firstFrameClock(`${session}.${position}`);
+  const draft = new Draft(session, `trial-${position}`);
+  const running = new Keep(`ocularist.running.${session}.`);
+  const verdicts = new Map(); // key of a play -> who waits for what the site says of it
   const record = (kind, values, about) => outbox.add({ kind, position, ...values }, about);
-  const clock = firstFrameClock(`${document.body.dataset.session}.${position}`);
-  let viewsLeft = number("views_left");
+  const stop = new AbortController();
 
-  const player = new Player(stage, {
-    width: number("width"),
-    height: number("height"),
-    frames: number("frames"),
-    onFirstFrame: clock.start,
+  tellOfLostPlays();
+  outbox.onStored = ({ key }, told) => verdicts.get(key)?.(told);
+  const questions = new Questionnaire(form, { save });
+  draft.follow(form);
+  const watching = startWatching(main, {
+    clips,
+    onFirstFrame: began,
     onPlay: played,
-    onBroken: broken,
-    onTooSmall: tooSmall,
+    onWatched: () => questions.unlock(),
+    onBroken: (code) => record("problem", { code: `CLIP-${code}` }, `${position}/problem`),
   });
-  player.isWatched = viewsLeft === 0;
-  const questions = new Questionnaire(form, {
-    save: (question, value) => record("answer", { question, value }, `${position}/${question}`),
-  });
-  if (player.isWatched) questions.unlock();
-  stage.querySelector("[data-reload]").addEventListener("click", load);
-  stage.querySelector("[data-to-questions]").addEventListener("click", toQuestions);
-  form.querySelector("[data-again]")?.addEventListener("click", () => player.play());
+  if (watching.isWatched) questions.unlock();
+  for (const name of draft.restore(form)) save(name, form.elements.namedItem(name).value);
+  questions.applyRules();
+  for (const button of main.querySelectorAll("[data-to-questions]")) {
+    button.addEventListener("click", toQuestions);
+  }
+  form.querySelector("[data-again]")?.addEventListener("click", watching.play);
   form.addEventListener("submit", submit);
+  addEventListener("pagehide", () => questions.flush(), { signal: stop.signal });
   if (main.dataset.open === "questions") toQuestions();
-  load();
 
-  async function load() {
-    player.state = "loading";
-    const meter = stage.querySelector("[data-when='loading'] progress");
-    clips.onProgress = () => (meter.value = clips.bytesOf([clip]) / clip.bytes);
-    try {
-      await openEitherWay(await clips.loadFirst(clip));
-      loadTheRest();
-    } catch (error) {
-      broken(error?.message?.split(" ")[0] || "DECODE");
-    }
+  function save(question, value) {
+    draft.note(question, value);
+    record("answer", { question, value }, `${position}/${question}`);
   }
 
-  /** Some browsers play a file of the server's and not the same bytes from memory (iPads had that). */
-  async function openEitherWay(blob) {
-    try {
-      await player.open(blob, "memory");
-    } catch {
-      await player.open(url, "server");
-    }
+  function began(shown_ms) {
+    clock.start(shown_ms);
+    running.set(String(position), new Date().toISOString());
   }
 
-  /** After a reload nothing is in memory: fetch what comes next while this clip is looked at. */
-  function loadTheRest() {
-    for (const part of main.dataset.next.split(",").filter(Boolean)) {
-      const [next, bytes] = part.split(" ");
-      clips.load({ url: next, bytes: Number(bytes) }).catch(() => {}); // its own page tells
-    }
-  }
-
-  function broken(code) {
-    clips.forget(url);
-    stage.querySelector("[data-code]").textContent = `${main.dataset.code}-${code}`;
-    player.state = "broken";
-    record("problem", { code: `CLIP-${code}` }, `${position}/problem`);
-  }
-
-  function tooSmall() {
-    player.state = "small";
-  }
-
+  /** Store the record of a play; resolves with what the site says of it, once it does. */
   function played(play) {
-    record("play", { play });
-    if (!play.is_complete) return;
-    viewsLeft = Math.max(0, viewsLeft - 1);
-    player.isWatched = viewsLeft === 0;
-    player.state = player.isWatched ? "watched" : "ready";
-    if (!player.isWatched) return;
-    questions.unlock();
-    stage.querySelector("[data-to-questions]").focus({ preventScroll: true });
+    running.remove(String(position));
+    const key = record("play", { play });
+    return new Promise((resolve) => verdicts.set(key, resolve));
+  }
+
+  /** A play that began and never ended: the browser crashed, or was killed. */
+  function tellOfLostPlays() {
+    for (const place of running.names()) {
+      const play = { is_complete: false, ended_by: "lost", started_at: running.get(place) };
+      outbox.add({ kind: "play", position: Number(place), play });
+      running.remove(place);
+    }
   }
 
   function toQuestions() {
@@ -101,43 +80,38 @@ export function startTrial(main, { outbox, clips, start }) {
     if (form.dataset.sending) return; // a double click sends once
     questions.flush();
     const open = questions.open();
-    const note = form.querySelector("[data-open-note]");
     if (open.length && !mayStayOpen) {
       mayStayOpen = true;
-      note.hidden = false;
-      note.querySelector("[data-count]").textContent = text("trial.open_questions", {
-        count: open.length,
-      });
-      note.focus();
+      tellOfOpen(open.length);
       return;
     }
     form.dataset.sending = "yes";
     form.querySelector("[type=submit]").setAttribute("aria-disabled", "true");
-    form.elements.namedItem("response_ms").value = clock.read();
+    const extra = [
+      ["response_ms", clock.read()],
+      ["clock_ms", clockStep_ms()],
+    ];
     await outbox.settled();
-    clock.clear();
     await submitPatiently(form, start, {
+      extra,
       onWaiting: () => outbox.options.onChange({ waiting: 1, failed: true }),
-      onLeave: () => clips.forget(url),
+      onLeave: () => {
+        draft.clear();
+        clock.clear();
+      },
     });
   }
 
-  return () => player.close();
-}
+  function tellOfOpen(count) {
+    const note = form.querySelector("[data-open-note]");
+    note.hidden = false;
+    note.querySelector("[data-count]").textContent = text("trial.open_questions", { count });
+    note.focus();
+  }
 
-/** Time since the trial's first presented frame; it goes on over a reload. */
-function firstFrameClock(trial) {
-  const name = `ocularist.first-frame.${trial}`;
-  return {
-    start() {
-      if (!sessionStorage.getItem(name)) sessionStorage.setItem(name, String(Date.now()));
-    },
-    read() {
-      const first = Number(sessionStorage.getItem(name));
-      return first ? String(Date.now() - first) : "";
-    },
-    clear() {
-      sessionStorage.removeItem(name);
-    },
+  return () => {
+    stop.abort();
+    watching.close();
+    outbox.onStored = () => {};
   };
 }

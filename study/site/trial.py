@@ -68,6 +68,8 @@ def _trial_page(
         is_practice=found.is_practice,
         is_watched=found.views >= definition.order.min_views,
         views_left=max(0, definition.order.min_views - found.views),
+        views_allowed=_views_allowed(definition.order.max_views, found),
+        retries=definition.certificate.retries,
         code=f"{visitor.name.upper()}-{found.position}",
         seconds=round(record.frame_count / record.fps),
         rows=question_rows(definition.questions),
@@ -77,6 +79,11 @@ def _trial_page(
         key=secrets.token_hex(16),
         button=text("trial.finish" if is_last else "trial.next"),
     )
+
+
+def _views_allowed(most: int | None, found: trials.Trial) -> int | None:
+    """Return how many more plays the study allows, None for any number."""
+    return None if most is None else max(0, most - found.views)
 
 
 def _heading(step: Step, text: Say) -> str:
@@ -134,6 +141,7 @@ def finish(
             key=first(fields, "key") or f"finish-{position}",
             is_final=True,
             response_ms=_milliseconds(first(fields, "response_ms")),
+            clock_ms=_step_ms(first(fields, "clock_ms")),
         )
     except AnswerError as error:
         return _trial_page(request, here, visitor, step, given=given, error=error)
@@ -148,3 +156,12 @@ def finish(
 def _milliseconds(text: str) -> int | None:
     """Read a time that a browser reports; None for anything that cannot be one."""
     return int(text) if text.isdecimal() and 0 < int(text[:12]) <= LONGEST_MS else None
+
+
+def _step_ms(text: str) -> float | None:
+    """Read how coarse a browser's clock is; None for anything that cannot be it."""
+    try:
+        value = float(text[:12])
+    except ValueError:
+        return None
+    return value if 0 < value <= LONGEST_MS else None

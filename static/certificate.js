@@ -1,0 +1,155 @@
+// The record of one play: what this browser can tell of its frames, its time, its window.
+//
+// It judges nothing: the site does, by the study's rule (study/design/certificate.py). Frames are
+// counted by requestVideoFrameCallback, whose presentedFrames goes on where callbacks were missed;
+// where it is absent by the differences of the playback quality, which is cumulative.
+
+import { clockStep_ms } from "./clock.js";
+import { Intervals } from "./intervals.js";
+import { isWindowed, screenFacts } from "./screen.js";
+
+const isOnGrid = (edge_px) => Math.abs(edge_px - Math.round(edge_px)) < 0.05;
+const round = (value, digits = 1) => Math.round(value * 10 ** digits) / 10 ** digits;
+
+export class PlayRecord {
+  /**
+   * @param {HTMLVideoElement} video  at its first frame, not yet playing
+   * @param {{frames: number, decoded: number, onFirstFrame: (shown_ms: number) => void}} options
+   *   decoded: the element's totalVideoFrames before any frame of this play was decoded
+   */
+  constructor(video, options) {
+    this.video = video;
+    this.options = options;
+    this.stop = new AbortController();
+    this.started_at = new Date().toISOString();
+    this.begun_ms = performance.now();
+    this.quality = video.getVideoPlaybackQuality?.();
+    this.counted_by = video.requestVideoFrameCallback ? "frames" : this.quality ? "quality" : "";
+    this.first = null;
+    this.last = null;
+    this.callbacks = 0;
+    this.max_gap_ms = 0;
+    this.counts = { stalls: 0, seeks: 0, pauses: 0, resizes: 0 };
+    this.stalled = new Intervals(false);
+    this.hidden = new Intervals(document.hidden);
+    this.unfocused = new Intervals(!document.hasFocus());
+    this.windowed = new Intervals(isWindowed());
+    this.rates = [video.playbackRate];
+    this.shown = this.shownSize();
+    this.listen();
+    if (this.counted_by === "frames") this.countFrames();
+    else video.addEventListener("timeupdate", () => this.begin(performance.now()), this.once());
+  }
+
+  get elapsed_ms() {
+    return performance.now() - this.begun_ms;
+  }
+
+  once() {
+    return { once: true, signal: this.stop.signal };
+  }
+
+  listen() {
+    const on = (target, name, act) => target.addEventListener(name, act, { signal: this.stop.signal });
+    const { video, counts } = this;
+    on(document, "visibilitychange", () => this.hidden.set(document.hidden, this.elapsed_ms));
+    on(window, "blur", () => this.unfocused.set(!document.hasFocus(), this.elapsed_ms));
+    on(window, "focus", () => this.unfocused.set(false, this.elapsed_ms));
+    on(document, "fullscreenchange", () => this.windowed.set(isWindowed(), this.elapsed_ms));
+    on(window, "resize", () => {
+      this.windowed.set(isWindowed(), this.elapsed_ms);
+      const { width_px, height_px } = this.shownSize();
+      const by_px = Math.abs(width_px - this.shown.width_px) + Math.abs(height_px - this.shown.height_px);
+      if (by_px > 0.5) counts.resizes += 1;
+    });
+    on(video, "waiting", () => {
+      if (this.first === null) return; // before the first frame nothing stands still
+      counts.stalls += 1;
+      this.stalled.set(true, this.elapsed_ms);
+    });
+    for (const name of ["playing", "timeupdate", "ended"]) {
+      on(video, name, () => this.stalled.set(false, this.elapsed_ms));
+    }
+    on(video, "seeking", () => (counts.seeks += 1));
+    on(video, "pause", () => (counts.pauses += video.ended ? 0 : 1));
+    on(video, "ratechange", () => this.rates.push(video.playbackRate));
+  }
+
+  // The clip's first frame is presented when it is loaded or wound back, under the curtain and long
+  // before the others: it says nothing of the play. The rule allows for it.
+  countFrames() {
+    this.video.requestVideoFrameCallback((now, frame) => {
+      if (this.stop.signal.aborted) return;
+      this.countFrames();
+      if (frame.mediaTime < this.video.duration / this.options.frames / 2) return;
+      this.callbacks += 1;
+      if (this.last) {
+        const gap_ms = frame.presentationTime - this.last.presentationTime;
+        this.max_gap_ms = Math.max(this.max_gap_ms, gap_ms);
+      } else {
+        this.first = frame;
+        this.begin(frame.presentationTime);
+      }
+      this.last = frame;
+    });
+  }
+
+  begin(shown_ms) {
+    this.first ??= { presentationTime: shown_ms, mediaTime: this.video.currentTime };
+    if (this.hasBegun) return;
+    this.hasBegun = true;
+    this.options.onFirstFrame(shown_ms);
+  }
+
+  /** The video's size in device pixels. */
+  shownSize() {
+    const box = this.video.getBoundingClientRect();
+    return { width_px: box.width * devicePixelRatio, height_px: box.height * devicePixelRatio, box };
+  }
+
+  /** End the record; `endedBy` is "end" for a play to the end. Call it once. */
+  finish(endedBy) {
+    this.stop.abort();
+    const { video, first, last } = this;
+    const now_ms = this.elapsed_ms;
+    const after = this.quality && video.getVideoPlaybackQuality();
+    const dropped = after ? after.droppedVideoFrames - this.quality.droppedVideoFrames : null;
+    const total = after ? after.totalVideoFrames - this.options.decoded : null;
+    const { box, width_px, height_px } = this.shown;
+    const ratio = devicePixelRatio;
+    return {
+      record_version: 2,
+      is_complete: endedBy === "end",
+      ended_by: endedBy,
+      started_at: this.started_at,
+      counted_by: this.counted_by,
+      expected_frames: this.options.frames,
+      presented_frames: this.presented(total, dropped),
+      dropped_frames: dropped,
+      callbacks: this.callbacks,
+      max_gap_ms: this.counted_by === "frames" && last ? round(this.max_gap_ms) : null,
+      wall_ms: last ? round(last.presentationTime - first.presentationTime) : null,
+      media_ms: last ? round((last.mediaTime - first.mediaTime) * 1000) : null,
+      ...this.counts,
+      ...this.stalled.facts("stalled", now_ms),
+      ...this.hidden.facts("hidden", now_ms),
+      ...this.unfocused.facts("unfocused", now_ms),
+      ...this.windowed.facts("windowed", now_ms),
+      min_rate: Math.min(...this.rates, video.playbackRate),
+      max_rate: Math.max(...this.rates, video.playbackRate),
+      shown_width_px: round(width_px, 2),
+      shown_height_px: round(height_px, 2),
+      shown_scale: round(width_px / video.videoWidth, 4),
+      is_on_grid: isOnGrid(box.left * ratio) && isOnGrid(box.top * ratio),
+      is_ratio_whole: Number.isInteger(ratio),
+      clock_ms: clockStep_ms(),
+      is_secure: isSecureContext,
+      ...screenFacts(),
+    };
+  }
+
+  presented(total, dropped) {
+    if (this.counted_by === "quality") return Math.min(total - dropped, this.options.frames);
+    return this.last ? this.last.presentedFrames - this.first.presentedFrames + 1 : null;
+  }
+}
