@@ -9,12 +9,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import pandas as pd
 
 from analysis.ordering import natural
 from analysis.table import DISTANCES, STANDARD_LODS
 from analysis.wording import listed
+
+
+MOST_LISTED: Final = 6  # more names than these are a number
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,9 @@ class Audit:
         text = [f"{seen} of {total} combinations of LoD and distance were shown."]
         if self.catch_clips:
             text.append(f"Clips with the same LoD in both eyes: {self.catch_clips}.")
-        if self.mirrored:
+        if len(self.mirrored) > MOST_LISTED:
+            text.append(f"Shown with the eyes exchanged: {len(self.mirrored)} pairings.")
+        elif self.mirrored:
             pairs = "; ".join(f"clips {a} and {b}" for a, b in self.mirrored)
             text.append(f"Shown with the eyes exchanged: {pairs}.")
         return text

@@ -6,7 +6,7 @@ and a separated cell at infinity otherwise. Without, it is the maximum likelihoo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -15,54 +15,16 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from analysis.models.counts import Counts
-from analysis.models.ordinal import (
-    INCONSISTENCY,
-    LENIENCY,
-    STYLE,
-    OrdinalModel,
-    log_likelihood,
-)
-from analysis.models.quadrature import Grid, normal_grid
+from analysis.models.grids import first_grid, refined_grid
+from analysis.models.likelihood import log_likelihood
+from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE, OrdinalModel
+from analysis.models.priors import PRIORS, Priors
+from analysis.models.quadrature import Grid
 
 Floats = NDArray[np.float64]
 _START_SD: Final[Mapping[str, float]] = {LENIENCY: 0.5, INCONSISTENCY: 0.2, STYLE: 0.2}
 _STEP: Final = 1e-5  # of the gradient's differences: its own error is about 1e-10
-_GRID_TOLERANCE: Final = 1e-3  # in log-likelihood, between a grid and one twice as fine
 _MOST_NODES, _MOST_CELLS = 1281, 60_000  # in one direction, and in all
-
-
-@dataclass(frozen=True)
-class Priors:
-    """Normal priors, (mean, sd) in latent units; the defaults are weak beside a rating's noise 1.
-
-    A LoD's distance from the reference cell, log steps between thresholds, the contrast from the
-    partner eye, a group's log noise, and the log of people's standard deviations.
-    """
-
-    location: tuple[float, float] = (0.0, 2.0)
-    first_threshold: tuple[float, float] = (-1.0, 3.0)
-    log_step: tuple[float, float] = (0.0, 1.0)
-    contrast: tuple[float, float] = (0.0, 0.5)
-    scale: tuple[float, float] = (0.0, 0.5)
-    log_sd: tuple[tuple[str, tuple[float, float]], ...] = (
-        (LENIENCY, (float(np.log(0.5)), 0.5)),
-        (INCONSISTENCY, (float(np.log(0.2)), 0.5)),
-        (STYLE, (float(np.log(0.2)), 0.5)),
-    )
-
-    def moments(self, model: OrdinalModel) -> tuple[Floats, Floats]:
-        """Return the priors' means and standard deviations in the parameters' order."""
-        own = dict(self.log_sd)
-        pairs = [
-            self.first_threshold,
-            *[self.log_step] * (model.categories - 2),
-            *[self.location] * len(model.terms),
-            *[self.contrast] * (model.partner is not None),
-            *[self.scale] * len(model.scale_terms),
-            *[own[effect] for effect in model.effects],
-        ]
-        means, sds = np.array(pairs).T
-        return means, sds
 
 
 @dataclass(frozen=True)
@@ -118,7 +80,7 @@ def fit(
     """
     _check(model, counts, priors)
     finer = grid is None
-    grid = grid or _first_grid(model, counts)
+    grid = grid or first_grid(model, counts)
     parameters = _start(model, counts) if start is None else start
     warnings: list[str] = []
     while True:
@@ -126,7 +88,7 @@ def fit(
         parameters = _climb(target, parameters)
         value = log_likelihood(model, parameters, counts, grid, weights=weights)[0]
         better = (
-            _refined(model, parameters, counts, grid, weights=weights, value=value)
+            refined_grid(model, parameters, counts, grid, weights=weights, value=value)
             if finer
             else None
         )
@@ -156,7 +118,7 @@ def _objective(
     weights: Floats | None,
 ) -> Objective:
     """Return the negative log posterior (or likelihood) and its gradient as a function."""
-    means, sds = priors.moments(model) if priors else (np.zeros(0), np.zeros(0))
+    means, sds = np.array([priors[kind] for kind in model.kinds]).T if priors else np.zeros((2, 0))
 
     def target(parameters: Floats) -> tuple[float, Floats]:
         value, gradient = log_likelihood(model, parameters, counts, grid, weights=weights)
@@ -207,7 +169,7 @@ def _covariance(target: Objective, parameters: Floats) -> tuple[Floats, bool]:
 
 
 def _check(model: OrdinalModel, counts: Counts, priors: Priors | None) -> None:
-    wanted = (len(model.location), model.categories)
+    wanted = (model.predictor.stimuli, model.categories)
     if (counts.stimuli, counts.categories) != wanted:
         raise ValueError(
             f"counts: the model has {wanted[0]} stimuli and {wanted[1]} categories; "
@@ -230,43 +192,8 @@ def _start(model: OrdinalModel, counts: Counts) -> Floats:
     parameters[0] = cut[0]
     parameters[1 : model.categories - 1] = np.log(np.maximum(np.diff(cut), 1e-3))
     spreads = [np.log(_START_SD[effect]) for effect in model.effects]
-    parameters[model.slices()["spread"]] = spreads
+    parameters[model.slices["spread"]] = spreads
+    for place, kind in enumerate(model.kinds):
+        if kind in ("log_height", "middle", "log_width"):
+            parameters[place] = PRIORS[kind][0]
     return parameters
-
-
-def _first_grid(model: OrdinalModel, counts: Counts) -> Grid:
-    """Choose nodes no further apart than what a person's answers leave open about the person."""
-    known = np.sqrt(1.0 + counts.most_per_person / model.link.sd**2)
-    sizes = {
-        LENIENCY: 12.0 * known * 0.7,
-        INCONSISTENCY: 3.0 * known * 0.3,
-        STYLE: 3.0 * known * 0.3,
-    }
-    least = {LENIENCY: 21, INCONSISTENCY: 9, STYLE: 9}
-    most = {LENIENCY: 161, INCONSISTENCY: 21, STYLE: 21}
-    return normal_grid([_odd(np.clip(sizes[e], least[e], most[e])) for e in model.effects])
-
-
-def _odd(count: float) -> int:
-    return 2 * int(np.ceil(count / 2)) + 1
-
-
-def _refined(
-    model: OrdinalModel,
-    parameters: Floats,
-    counts: Counts,
-    grid: Grid,
-    *,
-    weights: Floats | None,
-    value: float,
-) -> Grid | None:
-    """Return a finer grid where halving a direction's spacing changes the log-likelihood."""
-    finer = list(grid.counts)
-    for place, count in enumerate(grid.counts):
-        trial: Sequence[int] = [
-            2 * count - 1 if other == place else own for other, own in enumerate(grid.counts)
-        ]
-        again = log_likelihood(model, parameters, counts, normal_grid(trial), weights=weights)[0]
-        if abs(again - value) > _GRID_TOLERANCE * (1.0 if len(grid.counts) == 1 else 20.0):
-            finer[place] = 2 * count - 1
-    return normal_grid(finer) if finer != list(grid.counts) else None

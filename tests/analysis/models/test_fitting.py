@@ -12,9 +12,11 @@ from scipy.special import ndtri
 from statsmodels.miscmodels.ordinal_model import OrderedModel
 
 from analysis.models.counts import Counts, count_answers
-from analysis.models.fitting import Priors, fit
+from analysis.models.fitting import fit
 from analysis.models.links import LOGIT, PROBIT, Link
 from analysis.models.ordinal import LENIENCY, PERSON_EFFECTS, OrdinalModel
+from analysis.models.predictors import Linear
+from analysis.models.priors import PRIORS
 from analysis.models.quadrature import normal_grid
 
 sys.path.append(str(Path(__file__).parent))
@@ -39,7 +41,7 @@ def rated(
     answer = (percept[:, None] > cut).sum(axis=1)
     terms = ("c1", "c2", "c3", "c4", "c5", "right")
     counts = count_answers(who, what, answer, shape=(people, 12, 5))
-    return OrdinalModel(location, terms), counts, truth
+    return OrdinalModel(Linear(location, terms)), counts, truth
 
 
 @pytest.mark.parametrize("link", [PROBIT, LOGIT])
@@ -54,7 +56,7 @@ def test_wine_is_fitted_as_r_fits_it(link: Link) -> None:
     kinds, what = np.unique(wine[["temp", "contact"]].agg(" ".join, axis=1), return_inverse=True)
     location = np.array([["warm" in kind, "yes" in kind] for kind in kinds], dtype=float)
     counts = count_answers(wine["judge"] - 1, what, wine["rating"] - 1, shape=(9, 4, 5))
-    found = fit(OrdinalModel(location, ("temp", "contact"), link=link), counts)
+    found = fit(OrdinalModel(Linear(location, ("temp", "contact")), link=link), counts)
     own = wine.iloc[0]
     assert found.log_likelihood == pytest.approx(own["logLik"], abs=1e-5)
     assert found.sd(LENIENCY) == pytest.approx(own["sd"], abs=1e-3)
@@ -74,8 +76,7 @@ def test_soup_is_fitted_as_r_fits_it() -> None:
     kinds, what = np.unique(soup[["product", "prod"]], axis=0, return_inverse=True)
     location = (kinds[:, :1] == np.arange(2, 7)).astype(float)
     model = OrdinalModel(
-        location,
-        tuple(f"product {k}" for k in range(2, 7)),
+        Linear(location, tuple(f"product {k}" for k in range(2, 7))),
         6,
         effects=(),
         scale=(kinds[:, 1:] == 2).astype(float),
@@ -94,25 +95,25 @@ def test_soup_is_fitted_as_r_fits_it() -> None:
 @pytest.mark.parametrize("link", [PROBIT, LOGIT])
 def test_without_person_effects_it_is_statsmodels_model(link: Link) -> None:
     rng = np.random.default_rng(11)
-    model, counts, _ = rated(rng, people=1, each=600, sds=(0.0, 0.0, 0.0))
-    plain = OrdinalModel(model.location, model.terms, effects=(), link=link)
+    model, counts, truth = rated(rng, people=1, each=600, sds=(0.0, 0.0, 0.0))
+    plain = OrdinalModel(model.predictor, effects=(), link=link)
     found = fit(plain, counts)
     rows = np.argwhere(counts.table > 0)
     often = counts.table[tuple(rows.T)].astype(int)
     what, answer = np.repeat(rows[:, 1], often), np.repeat(rows[:, 2], often)
-    peer = OrderedModel(answer, model.location[what], distr=link.name).fit(
+    peer = OrderedModel(answer, model.predictor.jacobian(truth)[what], distr=link.name).fit(
         method="bfgs", disp=False, gtol=1e-8, maxiter=500
     )
     assert found.log_likelihood == pytest.approx(peer.llf, abs=1e-6)
-    own = [found.value(term) for term in model.terms]
+    own = [found.value(term) for term in model.predictor.names]
     assert own == pytest.approx(peer.params[:6], abs=2e-4)
-    errors = [found.standard_error(term) for term in model.terms]
+    errors = [found.standard_error(term) for term in model.predictor.names]
     assert errors == pytest.approx(peer.bse[:6], rel=2e-3)
 
 
 def test_two_categories_and_no_terms_give_the_share() -> None:
     counts = Counts(np.array([[[30.0, 70.0]]]))
-    found = fit(OrdinalModel(np.zeros((1, 0)), (), 2, effects=()), counts)
+    found = fit(OrdinalModel(Linear(np.zeros((1, 0)), ()), 2, effects=()), counts)
     assert found.value("threshold_1") == pytest.approx(ndtri(0.3))
     p, density = 0.3, np.exp(-(ndtri(0.3) ** 2) / 2) / np.sqrt(2 * np.pi)
     assert found.standard_error("threshold_1") == pytest.approx(
@@ -135,9 +136,9 @@ def test_the_grid_is_refined_until_it_no_longer_matters() -> None:
 def test_known_parameters_come_back() -> None:
     rng = np.random.default_rng(6)
     model, counts, truth = rated(rng, people=150, each=60, sds=(0.45, 0.25, 0.2))
-    full = OrdinalModel(model.location, model.terms, effects=PERSON_EFFECTS)
+    full = OrdinalModel(model.predictor, effects=PERSON_EFFECTS)
     found = fit(full, counts, grid=normal_grid([41, 9, 9]))
-    for name, true in zip(model.terms, truth, strict=True):
+    for name, true in zip(model.predictor.names, truth, strict=True):
         assert abs(found.value(name) - true) < 3.5 * found.standard_error(name)
     assert [found.sd(effect) for effect in PERSON_EFFECTS] == pytest.approx(
         [0.45, 0.25, 0.2], abs=0.07
@@ -147,7 +148,9 @@ def test_known_parameters_come_back() -> None:
 def test_priors_keep_a_separated_cell_finite() -> None:
     table = np.zeros((4, 2, 5))
     table[:, 0, 0] = table[:, 1, 4] = 3  # everyone: the one always 1, the other always 5
-    found = fit(OrdinalModel(np.array([[0.0], [1.0]]), ("high",)), Counts(table), priors=Priors())
+    found = fit(
+        OrdinalModel(Linear(np.array([[0.0], [1.0]]), ("high",))), Counts(table), priors=PRIORS
+    )
     assert 1.0 < found.value("high") < 8.0
     assert np.isfinite(found.standard_error("high"))
 
@@ -155,13 +158,13 @@ def test_priors_keep_a_separated_cell_finite() -> None:
 def test_what_the_data_cannot_say_is_told() -> None:
     table = np.zeros((4, 2, 2))
     table[:, 0, 0] = table[:, 1, 1] = 3
-    model = OrdinalModel(np.array([[0.0], [1.0]]), ("high",), 2, effects=())
+    model = OrdinalModel(Linear(np.array([[0.0], [1.0]]), ("high",)), 2, effects=())
     found = fit(model, Counts(table))
     assert found.warnings == ("the data leave some parameters without an upper or lower bound",)
 
 
 def test_faulty_counts_are_refused() -> None:
-    model = OrdinalModel(np.array([[0.0], [1.0]]), ("high",))
+    model = OrdinalModel(Linear(np.array([[0.0], [1.0]]), ("high",)))
     with pytest.raises(ValueError, match="2 stimuli and 5 categories; found 3 and 5"):
         fit(model, Counts(np.ones((1, 3, 5))))
     with pytest.raises(ValueError, match="no answer was given"):
@@ -170,11 +173,13 @@ def test_faulty_counts_are_refused() -> None:
     table[:, :, 4] = 0
     with pytest.raises(ValueError, match="nobody used category 5; merge it"):
         fit(model, Counts(table))
-    assert fit(model, Counts(table), priors=Priors()).value("log_step_4") > -3
+    assert fit(model, Counts(table), priors=PRIORS).value("log_step_4") > -3
 
 
 def test_an_unknown_parameter_is_named() -> None:
-    found = fit(OrdinalModel(np.zeros((1, 0)), (), 2, effects=()), Counts(np.ones((1, 1, 2))))
+    found = fit(
+        OrdinalModel(Linear(np.zeros((1, 0)), ()), 2, effects=()), Counts(np.ones((1, 1, 2)))
+    )
     with pytest.raises(KeyError, match="no parameter high; there are threshold_1"):
         found.value("high")
 
@@ -183,8 +188,8 @@ def test_a_table_of_a_bootstrap_is_that_of_repeated_people() -> None:
     rng = np.random.default_rng(9)
     model, counts, _ = rated(rng, people=8, each=40, sds=(0.5, 0.0, 0.0))
     weights = np.array([2.0, 0, 1, 1, 3, 0, 1, 0])
-    first = fit(model, counts, weights=weights, priors=Priors())
+    first = fit(model, counts, weights=weights, priors=PRIORS)
     repeated = Counts(np.repeat(counts.table, weights.astype(int), axis=0))
-    second = fit(model, repeated, priors=Priors(), grid=first.grid)
+    second = fit(model, repeated, priors=PRIORS, grid=first.grid)
     assert first.parameters == pytest.approx(second.parameters, abs=1e-5)
     assert pd.Series(first.model.names).is_unique

@@ -7,19 +7,19 @@ import pytest
 from scipy.special import ndtr
 
 from analysis.models.counts import count_answers
+from analysis.models.likelihood import cells, log_likelihood
 from analysis.models.links import LOGIT, PROBIT, Link
-from analysis.models.ordinal import PERSON_EFFECTS, OrdinalModel, cells, log_likelihood
+from analysis.models.ordinal import PERSON_EFFECTS, OrdinalModel
+from analysis.models.predictors import Contrasted, Linear
 from analysis.models.quadrature import normal_grid
 
 
 def random_model(rng: np.random.Generator, link: Link, categories: int) -> OrdinalModel:
     return OrdinalModel(
-        rng.normal(size=(6, 3)),
-        ("a", "b", "c"),
+        Contrasted(rng.normal(size=(6, 3)), rng.normal(size=(6, 3)), ("a", "b", "c")),
         categories,
         PERSON_EFFECTS,
         link,
-        partner=rng.normal(size=(6, 3)),
         scale=rng.normal(size=(6, 1)),
         scale_terms=("group",),
     )
@@ -55,8 +55,8 @@ def test_probabilities_are_those_of_the_written_formula() -> None:
     grid = normal_grid([5, 3, 3])
     names = dict(zip(model.names, at, strict=True))
     means = np.array([names[term] for term in "abc"])
-    assert model.partner is not None
-    own, other = model.location @ means, model.partner @ means
+    assert isinstance(model.predictor, Contrasted)
+    own, other = model.predictor.design @ means, model.predictor.beside @ means
     eta = own + names["contrast"] * (own - other)
     tau = names["threshold_1"] + np.cumsum(
         [0.0, *(np.exp(names[f"log_step_{k}"]) for k in (2, 3, 4))]
@@ -77,7 +77,7 @@ def test_probabilities_are_those_of_the_written_formula() -> None:
 
 def test_many_people_are_added_up_in_blocks() -> None:
     rng = np.random.default_rng(5)
-    model = OrdinalModel(np.array([[0.0], [1.0]]), ("high",))
+    model = OrdinalModel(Linear(np.array([[0.0], [1.0]]), ("high",)))
     n = 30_000
     counts = count_answers(
         np.arange(n), rng.integers(2, size=n), rng.integers(5, size=n), shape=(n, 2, 5)
@@ -94,9 +94,7 @@ def test_many_people_are_added_up_in_blocks() -> None:
 
 
 def test_faulty_models_are_refused() -> None:
-    with pytest.raises(ValueError, match="location: 2 terms, found"):
-        OrdinalModel(np.zeros((3, 1)), ("a", "b"))
     with pytest.raises(ValueError, match=r"effects: unknown \['mood'\]; choose of"):
-        OrdinalModel(np.zeros((3, 1)), ("a",), effects=("mood",))
+        OrdinalModel(Linear(np.zeros((3, 1)), ("a",)), effects=("mood",))
     with pytest.raises(ValueError, match="categories: at least 2, found 1"):
-        OrdinalModel(np.zeros((3, 1)), ("a",), 1)
+        OrdinalModel(Linear(np.zeros((3, 1)), ("a",)), 1)
