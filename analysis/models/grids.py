@@ -1,4 +1,4 @@
-"""How fine an integration grid must be: chosen from what people answered, checked at the optimum."""
+"""How fine an integration grid must be: guessed from the answers, checked at the optimum."""
 
 from __future__ import annotations
 

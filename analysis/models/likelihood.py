@@ -1,4 +1,4 @@
-"""The likelihood of counts under an ordinal model, people's effects integrated out, and its gradient.
+"""The likelihood of counts under an ordinal model, people integrated out, and its gradient.
 
 One matrix product gives every person's log-likelihood at every node of the grid; a second gives
 the expected counts that the gradient is made of. The cost does not grow with a person's answers.
