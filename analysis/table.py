@@ -9,9 +9,11 @@ viewer's, as seen on the screen.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any, Final
+
+from analysis.check_columns import CHECKS
+from analysis.column import Accepted, Column
 
 EFFECTS: Final = (
     "texture",
@@ -30,49 +32,6 @@ COMPARISONS: Final = ("-1", "0", "1")
 NOTICED: Final = ("yes", "unsure", "no")
 SCALE: Final = (1, 5)
 """Lowest and highest rating of the thesis's scale (Appendix B, question 4)."""
-
-Accepted = Sequence[str] | tuple[float, float]
-"""Either the values that a column may hold, or its lowest and highest number."""
-
-
-@dataclass(frozen=True)
-class Column:
-    """One column: what it is called, what stands in it and what that means.
-
-    ``kind`` is text, category, integer, number, boolean (true, false) or time (ISO 8601 with
-    offset). ``choices`` are the accepted values of a category; ``low`` and ``high`` bound a number.
-    ``required`` means that somebody else's table must bring it, not that a cell may not be empty.
-    """
-
-    name: str
-    kind: str
-    meaning: str
-    unit: str = ""
-    choices: tuple[str, ...] = ()
-    low: float | None = None
-    high: float | None = None
-    required: bool = False
-    may_be_empty: bool = True
-
-    def accepting(self, accepted: Accepted) -> Column:
-        """Copy this column with a study's own choices or its own lowest and highest number."""
-        if self.kind in ("integer", "number"):
-            low, high = accepted
-            return replace(self, low=float(low), high=float(high))
-        return replace(self, kind="category", choices=tuple(map(str, accepted)))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return this column's entry in ``codebook.json``."""
-        entry: dict[str, Any] = {"name": self.name, "type": self.kind}
-        if self.unit:
-            entry["unit"] = self.unit
-        entry["meaning"] = self.meaning
-        if self.choices:
-            entry["accepted"] = list(self.choices)
-        if self.low is not None or self.high is not None:
-            entry["accepted"] = {"lowest": self.low, "highest": self.high}
-        return entry
-
 
 _WHO: Final = (
     Column("study", "text", "name of the study"),
@@ -95,7 +54,9 @@ _TRIAL: Final = (
     ),
     Column("iris_px", "number", "diameter of the iris in the clip's pixels", "px", low=0),
     Column("iris_deg", "number", "angle of the iris at the participant's eye", "degree", low=0),
+    Column("iris_deg_se", "number", "standard error of iris_deg", "degree", low=0),
     Column("shown_scale", "number", "device pixels shown per pixel of the clip", "ratio", low=0),
+    Column("shown_scale_se", "number", "standard error of shown_scale", "ratio", low=0),
     Column(
         "orbit_direction",
         "category",
@@ -188,6 +149,7 @@ PARTICIPANTS: Final = (
     Column("screen_height", "integer", "height of the screen", "CSS px", low=0),
     Column("pixel_ratio", "number", "device pixels per CSS pixel", "ratio", low=0),
     Column("user_agent_family", "text", "family of the browser"),
+    *CHECKS,
     Column("arm", "text", "arm of the schedule that the participant was assigned to"),
 )
 

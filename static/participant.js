@@ -2,6 +2,9 @@
 
 import { ClipStore } from "./preload.js";
 import { startAbout } from "./about.js";
+import { startCalibration } from "./calibration.js";
+import { startDeviceCheck } from "./device_check.js";
+import { startEyesight } from "./eyesight.js";
 import { startNext, startStop } from "./leaving.js";
 import { startPause } from "./pause.js";
 import { startPreparing } from "./preparing.js";
@@ -10,6 +13,9 @@ import { startTrial } from "./trial.js";
 
 const PAGES = {
   about: startAbout,
+  device_check: startDeviceCheck,
+  calibration: startCalibration,
+  eyesight: startEyesight,
   pause: startPause,
   preparing: startPreparing,
   trial: startTrial,

@@ -27,6 +27,7 @@ def prepare(settings: Settings, study: str) -> Prepared:
 
     Raises DefinitionError with every fault of the file before anything is stored.
     """
+    from study.commands.self_test import make_self_test
     from study.data import jobs, studies
     from study.data.database import open_database
     from study.design.definition import read_definition
@@ -36,6 +37,8 @@ def prepare(settings: Settings, study: str) -> Prepared:
     db = open_database(settings.database_url)
     stored = studies.register(db, definition)
     jobs.enqueue(db, definition.wanted_specs())
+    if definition.device_check is not None:
+        make_self_test(settings.media_folder)
     return Prepared(db, stored)
 
 

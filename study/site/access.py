@@ -112,7 +112,7 @@ def step_url(step: Step) -> str:
     """Return the page of a step."""
     if step.trial is not None:
         return f"/trial/{step.trial.position}"
-    return {"about": "/about-you", "withdrawn": "/withdrawn"}.get(step.name, f"/{step.name}")
+    return {"about": "/about-you", "device_check": "/device-check", "withdrawn": "/withdrawn"}.get(step.name, f"/{step.name}")
 
 
 def step_of(here: Here, visitor: Visitor, *expected: str) -> Step:

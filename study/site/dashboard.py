@@ -19,6 +19,9 @@ router = APIRouter(default_response_class=HTMLResponse)
 STEP_WORDS: Final = {
     "consent": "reading the consent",
     "about": "about themselves",
+    "device_check": "checking their screen",
+    "calibration": "measuring their screen",
+    "eyesight": "testing their eyesight",
     "instructions": "reading the instructions",
     "preparing": "waiting for clips",
     "practice": "practice clip",

@@ -1,0 +1,89 @@
+// The self-test: what this browser makes of a clip whose colours are known, and by which decoder.
+
+const PATIENCE_MS = 8000;
+
+/** Return {codec, is_smooth, is_power_efficient, patches}; rejects where the clip does not play. */
+export async function selfTest(url, layout) {
+  const answer = await fetch(url);
+  if (!answer.ok) throw new Error(`HTTP-${answer.status}`);
+  const bytes = await answer.arrayBuffer();
+  const codec = codecOf(new Uint8Array(bytes));
+  const address = URL.createObjectURL(new Blob([bytes], { type: "video/mp4" }));
+  const video = document.createElement("video");
+  try {
+    await firstFrame(video, address);
+    return { codec, ...(await decoding(codec, video)), patches: patchesOf(video, layout) };
+  } finally {
+    video.removeAttribute("src");
+    video.load();
+    URL.revokeObjectURL(address);
+  }
+}
+
+/** The codec's name (RFC 6381) from the file's own avcC box: profile, constraints, level. */
+function codecOf(bytes) {
+  const mark = [0x61, 0x76, 0x63, 0x43]; // "avcC"
+  for (let i = 0; i < bytes.length - 8; i += 1) {
+    if (mark.every((byte, k) => bytes[i + k] === byte)) {
+      const named = Array.from(bytes.slice(i + 5, i + 8), (b) => b.toString(16).padStart(2, "0"));
+      return `avc1.${named.join("")}`;
+    }
+  }
+  return "";
+}
+
+async function decoding(codec, video) {
+  const asked = {
+    type: "file",
+    video: {
+      contentType: `video/mp4; codecs="${codec}"`,
+      width: video.videoWidth,
+      height: video.videoHeight,
+      bitrate: 12e6, // of our largest clips
+      framerate: 30,
+    },
+  };
+  try {
+    const found = await navigator.mediaCapabilities.decodingInfo(asked);
+    return { is_smooth: found.smooth, is_power_efficient: found.powerEfficient };
+  } catch {
+    return { is_smooth: null, is_power_efficient: null };
+  }
+}
+
+function firstFrame(video, address) {
+  return new Promise((resolve, reject) => {
+    const timer = setTimeout(() => reject(new Error("NO-FRAME")), PATIENCE_MS);
+    const seen = () => {
+      clearTimeout(timer);
+      video.pause();
+      resolve();
+    };
+    video.muted = true;
+    video.playsInline = true;
+    video.addEventListener("error", () => reject(new Error("DECODE")), { once: true });
+    if (video.requestVideoFrameCallback) video.requestVideoFrameCallback(seen);
+    else video.addEventListener("timeupdate", seen, { once: true });
+    video.src = address;
+    video.play().catch(reject);
+  });
+}
+
+/** The mean colour of every square's middle: at its border chroma is shared with the next. */
+function patchesOf(video, { count, patch_px, columns }) {
+  const canvas = document.createElement("canvas");
+  canvas.width = video.videoWidth;
+  canvas.height = video.videoHeight;
+  const context = canvas.getContext("2d", { colorSpace: "srgb", willReadFrequently: true });
+  context.drawImage(video, 0, 0);
+  const inset = patch_px / 4;
+  const side = patch_px / 2;
+  return Array.from({ length: count }, (_, index) => {
+    const x = (index % columns) * patch_px + inset;
+    const y = Math.floor(index / columns) * patch_px + inset;
+    const { data } = context.getImageData(x, y, side, side);
+    const sums = [0, 0, 0];
+    for (let i = 0; i < data.length; i += 4) for (const k of [0, 1, 2]) sums[k] += data[i + k];
+    return sums.map((sum) => Math.round((100 * sum) / (side * side)) / 100);
+  });
+}
