@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from study.data import arms, jobs
+from study.data import arms, erasure, jobs, links
 from study.data.collection import Collected, collect
 from study.data.database import Database
+from study.data.erasure import Withdrawal
 from study.data.participants import IDLE
 from study.data.progress import STEPS, StepName, early_step
 from study.data.studies import Study
-from study.design.schedule import Arm
+from study.design.arms import Arm
+from study.design.completion import OUTCOMES
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,7 @@ class Person:
     orbit_direction: str | None
     sittings: int
     recruited_by: str
+    outcome: str | None
     created_at: datetime
     last_seen_at: datetime
     completed_at: datetime | None
@@ -37,7 +40,7 @@ class Person:
 
 @dataclass(frozen=True)
 class Counts:
-    """How many people there are of one kind, real or simulated.
+    """How many people there are of one kind, real or simulated, those who withdrew included.
 
     ``steps`` counts everybody by their present step; ``trials`` are complete ones without practice.
     """
@@ -45,6 +48,7 @@ class Counts:
     arrived: int
     here: int
     completed: int
+    outcomes: dict[str, int]
     withdrawn: int
     trials: int
     steps: dict[StepName, int]
@@ -60,6 +64,8 @@ class Overview:
     simulated: Counts
     arms: dict[Arm, int]
     jobs: jobs.Summary
+    links: links.LinkCounts
+    withdrawals: Sequence[Withdrawal]
 
 
 def summary(db: Database, study: Study) -> Overview:
@@ -69,15 +75,19 @@ def summary(db: Database, study: Study) -> Overview:
         collected = collect(db, study)
         filled = arms.counts(db, study)
         rendering = jobs.summary(db, wanted)
+        gone = erasure.withdrawals(db, study)
+        invited = links.counts(db, study)
     now = db.now()
     people = [_person(study, one, now) for one in collected]
     return Overview(
         at=now,
         people=people,
-        real=_counts(people, collected, simulated=False),
-        simulated=_counts(people, collected, simulated=True),
+        real=_counts(people, collected, gone, simulated=False),
+        simulated=_counts(people, collected, gone, simulated=True),
         arms=filled,
         jobs=rendering,
+        links=invited,
+        withdrawals=gone,
     )
 
 
@@ -102,24 +112,34 @@ def _person(study: Study, one: Collected, now: datetime) -> Person:
         orbit_direction=row.orbit_direction,
         sittings=one.sittings,
         recruited_by=row.recruited_by,
+        outcome=row.outcome,
         created_at=row.created_at,
         last_seen_at=row.last_seen_at,
         completed_at=row.completed_at,
-        is_here=step not in ("thanks", "withdrawn") and now - row.last_seen_at < IDLE,
+        is_here=row.outcome is None and now - row.last_seen_at < IDLE,
     )
 
 
-def _counts(people: Sequence[Person], collected: Sequence[Collected], *, simulated: bool) -> Counts:
+def _counts(
+    people: Sequence[Person],
+    collected: Sequence[Collected],
+    gone: Sequence[Withdrawal],
+    *,
+    simulated: bool,
+) -> Counts:
     mine = [
         (person, one)
         for person, one in zip(people, collected, strict=True)
         if person.simulated == simulated
     ]
     steps = Counter(person.step for person, _ in mine)
+    steps["withdrawn"] = sum(one.simulated == simulated for one in gone)
+    outcomes = Counter(person.outcome for person, _ in mine)
     return Counts(
-        arrived=len(mine),
+        arrived=len(mine) + steps["withdrawn"],
         here=sum(person.is_here for person, _ in mine),
         completed=sum(person.completed_at is not None for person, _ in mine),
+        outcomes={outcome: outcomes[outcome] for outcome in OUTCOMES},
         withdrawn=steps["withdrawn"],
         trials=sum(
             c.trial.is_complete and not c.trial.is_practice for _, one in mine for c in one.trials

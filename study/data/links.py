@@ -85,11 +85,11 @@ def find(db: Database, token: str) -> Link | None:
 def counts(db: Database, study: Study) -> LinkCounts:
     """Count a study's links."""
     query = (
-        select(LinkRow.is_used, func.count())
+        select(LinkRow.is_used, func.count().label("total"))
         .join(StudyRow, LinkRow.study_id == StudyRow.id)
         .where(StudyRow.key == study.key)
         .group_by(LinkRow.is_used)
     )
     with db.reading() as session:
-        found = dict(session.execute(query).tuples().all())
+        found = {bool(row.is_used): int(row.total) for row in session.execute(query)}
     return LinkCounts(used=found.get(True, 0), unused=found.get(False, 0))

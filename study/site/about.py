@@ -8,8 +8,8 @@ from typing import Final
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import events, progress
-from study.design.questions import AnswerError
+from study.data import consents, events, progress
+from study.design.questions import AnswerError, Question
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import answers_in, first, question_rows
 from study.site.frame import shared
@@ -24,6 +24,12 @@ def about(here: Here, visitor: AVisitor) -> Response:
     """Ask about the participant."""
     step_of(here, visitor, "about")
     return _about_page(here, visitor, _drafts(here, visitor))
+
+
+def questions_about(here: Here, visitor: Visitor) -> tuple[Question, ...]:
+    """Return the questions about the participant, without those that they did not agree to."""
+    with_health = consents.allows_health(here.db, visitor.participant)
+    return progress.asked_about(visitor.study.definition, with_health=with_health)
 
 
 def _drafts(here: Here, visitor: Visitor) -> dict[str, object]:
@@ -45,7 +51,7 @@ def _about_page(
         status=422 if error else 200,
         **frame,
         about=definition.about_page,
-        rows=question_rows(definition.about),
+        rows=question_rows(questions_about(here, visitor)),
         answers=answers,
         faults=error.said(frame["text"]) if error else {},
         key=secrets.token_hex(16),
@@ -55,7 +61,7 @@ def _about_page(
 @router.post("/about-you")
 def store_about(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
     """Store the answers about the participant."""
-    answers = answers_in(fields, visitor.study.definition.about)
+    answers = answers_in(fields, questions_about(here, visitor))
     try:
         progress.store_about(
             here.db, visitor.participant, answers, key=first(fields, "key") or "about"

@@ -8,16 +8,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Final
 
-from fastapi import Depends, Request
+from fastapi import Depends, Header, Request
 from fastapi.responses import RedirectResponse, Response
 
 from study.data import participants, progress, researchers, studies
 from study.data.participants import Participant
 from study.data.progress import Step
+from study.data.refusals import WithdrawnError
 from study.data.studies import Study
 from study.site.forms import first, read_form
 from study.site.place import Here
-from study.site.signatures import csrf_token, is_csrf_token, read_researcher
+from study.site.signatures import (
+    csrf_token,
+    is_csrf_token,
+    read_outbox,
+    read_participant,
+    read_researcher,
+    sign_outbox,
+)
 
 PARTICIPANT_COOKIE: Final = "ocularist_participant"
 RESEARCHER_COOKIE: Final = "ocularist_researcher"
@@ -45,8 +53,10 @@ class Visitor:
     participant: Participant
     token: str
     csrf: str
+    outbox: str
     study: Study
     resume_url: str
+    is_idle: bool
 
     @property
     def name(self) -> str:
@@ -63,33 +73,101 @@ class Visitor:
         """True once completed or screened out."""
         return self.participant.outcome is not None
 
+    @property
+    def is_at_shared_computer(self) -> bool:
+        """True where one person follows the other at the same browser."""
+        return self.study.definition.entrance.shared_computers
 
-def visitor_or_none(request: Request, here: Here) -> Visitor | None:
-    """Return the participant whose cookie the request carries, or None."""
-    token = request.cookies.get(PARTICIPANT_COOKIE, "")
-    participant = participants.by_token(here.db, token) if token else None
-    if participant is None:
+    @property
+    def is_released(self) -> bool:
+        """True where the next person may begin: who was here has finished or gone."""
+        return self.is_at_shared_computer and (self.is_over or self.is_idle)
+
+
+def participant_by(here: Here, credential: str) -> Participant | None:
+    """Return whom a token or a signed name belongs to, or None."""
+    if not credential:
         return None
+    found = participants.by_token(here.db, credential)
+    if found is None and (name := read_participant(here.secret, credential)) is not None:
+        found = participants.by_name(here.db, name)
+    return found
+
+
+def as_visitor(request: Request, here: Here, participant: Participant, token: str) -> Visitor:
+    """Return a participant as pages see them."""
     return Visitor(
         participant=participant,
         token=token,
         csrf=csrf_token(here.secret, token),
+        outbox=sign_outbox(here.secret, participant.public_id),
         study=studies.by_id(here.db, participant.study_id).spoken(participant.language),
         resume_url=str(request.url_for("resume", token=token)),
+        is_idle=here.db.now() - participant.last_seen_at > participants.IDLE,
     )
+
+
+def visitor_or_none(request: Request, here: Here) -> Visitor | None:
+    """Return the participant whose cookie the request carries, or None.
+
+    A shared computer that nobody has used for half an hour belongs to nobody.
+    """
+    token = request.cookies.get(PARTICIPANT_COOKIE, "")
+    participant = participant_by(here, token)
+    if participant is None:
+        return None
+    visitor = as_visitor(request, here, participant, token)
+    is_released = visitor.is_at_shared_computer and visitor.is_idle and request.method == "GET"
+    return None if is_released else visitor
 
 
 MaybeVisitor = Annotated[Visitor | None, Depends(visitor_or_none)]
 
 
-def a_visitor(visitor: MaybeVisitor) -> Visitor:
-    """Return the participant; others are led to the first page."""
+def a_visitor(request: Request, visitor: MaybeVisitor) -> Visitor:
+    """Return the participant; others are led to the first page.
+
+    So is who comes back after half an hour: the first page asks whether it is still the same
+    person. What was sent from an open page is taken all the same.
+    """
     if visitor is None:
+        has_withdrawn = request.cookies.get(PARTICIPANT_COOKIE) == WITHDRAWN
+        raise ElsewhereError("/withdrawn" if has_withdrawn else "/")
+    if visitor.is_idle and not visitor.is_over and request.method == "GET":
         raise ElsewhereError("/")
     return visitor
 
 
 AVisitor = Annotated[Visitor, Depends(a_visitor)]
+
+
+def reporter(
+    request: Request,
+    here: Here,
+    visitor: MaybeVisitor,
+    x_csrf_token: Annotated[str, Header()] = "",
+    x_ocularist_outbox: Annotated[str, Header()] = "",
+) -> Visitor:
+    """Return whose entry a browser delivers: whom the outbox names, else whom the cookie does.
+
+    An outbox keeps its owner's name, so that what waited in it arrives even when somebody else has
+    begun in that browser since. Raises WithdrawnError for an owner who is gone.
+    """
+    if x_ocularist_outbox:
+        name = read_outbox(here.secret, x_ocularist_outbox)
+        if name is None:
+            raise ForgedError
+        participant = participants.by_name(here.db, name)
+        if participant is None:
+            raise WithdrawnError("this participant has withdrawn; nothing more is stored")
+        return as_visitor(request, here, participant, "")
+    if visitor is None:
+        raise ElsewhereError("/")
+    check_csrf(here.secret, visitor.token, x_csrf_token)
+    return visitor
+
+
+Reporter = Annotated[Visitor, Depends(reporter)]
 
 
 async def visitors_form(request: Request, here: Here, visitor: AVisitor) -> dict[str, list[str]]:
@@ -112,7 +190,7 @@ def step_url(step: Step) -> str:
     """Return the page of a step."""
     if step.trial is not None:
         return f"/trial/{step.trial.position}"
-    return {"about": "/about-you", "device_check": "/device-check", "withdrawn": "/withdrawn"}.get(step.name, f"/{step.name}")
+    return {"about": "/about-you", "device_check": "/device-check", "screened_out": "/screened-out"}.get(step.name, f"/{step.name}")
 
 
 def step_of(here: Here, visitor: Visitor, *expected: str) -> Step:

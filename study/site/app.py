@@ -24,6 +24,7 @@ from study.site import (
     device_check,
     door,
     downloads,
+    ending,
     gallery,
     health,
     invitations,
@@ -36,6 +37,7 @@ from study.site import (
 )
 from study.site.access import ElsewhereError, ForgedError
 from study.site.headers import SecureHeaders
+from study.site.language import RememberLanguage
 from study.site.media import ClipShelf
 from study.site.place import NoStudyError, Place
 from study.site.problems import problem_page
@@ -55,6 +57,7 @@ ROOMS = (
     pause,
     news,
     leaving,
+    ending,
     clips,
     door,
     dashboard,
@@ -86,6 +89,7 @@ def create_app(settings: Settings, *, study_id: int | None = None) -> FastAPI:
 
     app = FastAPI(title="Ocularist", openapi_url=None, lifespan=lifespan)
     app.state.place = place
+    app.add_middleware(RememberLanguage)
     app.add_middleware(SecureHeaders)
     for room in ROOMS:
         app.include_router(room.router)

@@ -1,4 +1,4 @@
-"""Pausing, coming back, stopping, finishing, and handing a shared computer to the next person."""
+"""Pausing, coming back, stopping, withdrawing, handing a shared computer to the next person."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Request
 from fastapi.responses import HTMLResponse, Response
 from markupsafe import Markup
 
-from study.data import completion, erasure, events, participants
+from study.data import erasure, events, participants
 from study.site.access import (
     PARTICIPANT_COOKIE,
     REMEMBER_S,
@@ -19,11 +19,12 @@ from study.site.access import (
     Visitor,
     VisitorsForm,
     check_csrf,
+    participant_by,
     redirect,
     remember,
-    step_of,
     to_current,
 )
+from study.site.arrival import ARRIVAL_COOKIE
 from study.site.forms import first, read_form
 from study.site.frame import shared
 from study.site.language import Wishes
@@ -42,24 +43,14 @@ def go_on(here: Here, visitor: MaybeVisitor) -> Response:
 
 @router.get("/resume/{token}", name="resume")
 def resume(request: Request, here: Here, token: str) -> Response:
-    """Take a participant in again by their personal link, in any browser."""
-    if participants.by_token(here.db, token) is None:
+    """Take a participant in again by their private link, in any browser."""
+    participant = participant_by(here, token)
+    if participant is None:
         return redirect("/")
+    participants.seen(here.db, participant)
     answer = redirect("/continue")
     remember(request, answer, PARTICIPANT_COOKIE, token, REMEMBER_S)
     return answer
-
-
-@router.get("/thanks")
-def thanks(here: Here, visitor: AVisitor) -> Response:
-    """Thank, with the code that proves that every answer is stored."""
-    step_of(here, visitor, "thanks")
-    return here.page(
-        "participant/thanks.html",
-        **shared(visitor.study, visitor, "thanks"),
-        thanks=visitor.study.definition.thanks,
-        completion_code=completion.code(here.db, visitor.participant),
-    )
 
 
 @router.get("/withdrawn")
@@ -143,4 +134,5 @@ def forget(
     if visitor is not None:
         check_csrf(here.secret, visitor.token, first(fields, "csrf"))
         answer.delete_cookie(PARTICIPANT_COOKIE)
+    answer.delete_cookie(ARRIVAL_COOKIE)
     return answer

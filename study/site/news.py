@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Header
+from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
 from study.data import answers, events, trials, views
 from study.design.certificate import judge
 from study.design.questions import AnswerError, read_answers
-from study.site.about import DRAFTED
-from study.site.access import AVisitor, Visitor, check_csrf
+from study.site.about import DRAFTED, questions_about
+from study.site.access import Reporter, Visitor
 from study.site.language import language_of
 from study.site.media import to_expect
 from study.site.place import Here
@@ -37,13 +37,17 @@ class Entry(BaseModel):
     at: Annotated[str, Field(max_length=40)] = ""
 
 
+# What was ticked of several: their values.
+Ticked = Annotated[list[Annotated[str, Field(max_length=60)]], Field(max_length=200)]
+
+
 class AnswerEntry(Entry):
     """An answer to one question of a trial; without a trial, of the page about the participant."""
 
     kind: Literal["answer"]
     position: int | None = None
     question: Annotated[str, Field(max_length=60)]
-    value: Annotated[str, Field(max_length=20_000)]
+    value: Annotated[str, Field(max_length=20_000)] | Ticked
 
 
 class PlayEntry(Entry):
@@ -68,15 +72,13 @@ AnyEntry = Annotated[AnswerEntry | PlayEntry | ProblemEntry, Field(discriminator
 @router.post("/events")
 def report(
     here: Here,
-    visitor: AVisitor,
+    visitor: Reporter,
     entry: AnyEntry,
-    x_csrf_token: Annotated[str, Header()] = "",
 ) -> dict[str, Any]:
     """Store one entry, and say so only once it is stored: by the entry's own key.
 
     An answer that cannot be stored is refused kindly: the form says why when it is sent.
     """
-    check_csrf(here.secret, visitor.token, x_csrf_token)
     if isinstance(entry, AnswerEntry):
         told = _answer(here, visitor, entry)
     elif isinstance(entry, PlayEntry):
@@ -113,7 +115,7 @@ def _answer(here: Here, visitor: Visitor, entry: AnswerEntry) -> dict[str, Any]:
     given = {entry.question: entry.value}
     try:
         if entry.position is None:
-            read_answers(visitor.study.definition.about, given, is_final=False)
+            read_answers(questions_about(here, visitor), given, is_final=False)
             draft = {"question": entry.question, "value": entry.value}
             stored = events.record(
                 here.db, visitor.participant, key=entry.key, kind=DRAFTED, payload=draft

@@ -32,6 +32,8 @@ PROBLEMS: Final = {
     "NOT-READABLE": Problem("not_readable"),
     "PAGE-404": Problem("page_404", "first_page", "/"),
     "CLIP-MISSING": Problem("clip_missing", "try_again"),
+    "LINK-UNKNOWN": Problem("link_unknown", "first_page", "/"),
+    "LINK-USED": Problem("link_used", "first_page", "/"),
 }
 REFUSED: Final = Problem("refused")
 OUR_FAULT: Final = Problem("our_fault", "try_again")
@@ -72,6 +74,7 @@ def _frame(request: Request, place: Place) -> dict[str, Any]:
         "study_title": "Ocularist",
         "language": words.tongue.language,
         "direction": tongue(words.tongue.language).direction,
+        "languages": [],
         "text": words.markup,
         "script_texts": words.of_scripts("problem"),
         "contact": Contact(name=words.text("problem.contact")),

@@ -12,7 +12,7 @@ import pytest
 
 from analysis import column_names
 from renderer.camera import iris_px
-from study.data import answers, dashboard, events, export, jobs, participants
+from study.data import answers, dashboard, erasure, events, export, jobs
 from study.data.database import Database
 from study.data.export import Tables, csv_of
 from study.data.studies import Study
@@ -144,7 +144,7 @@ def test_who_withdrew_or_never_agreed_is_in_no_table(
     db: Database, study: Study, walked: Any, enrol_walk: Any
 ) -> None:
     enrol_walk(2)
-    participants.withdraw(db, walked.participant)
+    erasure.withdraw(db, walked.participant)
     found = export.tables(db, study)
     assert [len(t) for t in (found.ratings, found.comparisons, found.participants)] == [0, 0, 0]
     assert tuple(found.ratings.columns) == column_names("ratings")
@@ -223,13 +223,14 @@ def test_the_overview_says_who_is_where(
     midway.answer(1)
     midway.answer(2)
     enrol_walk(4, simulated=True)
-    participants.withdraw(db, enrol_walk(5).participant)
+    erasure.withdraw(db, enrol_walk(5).participant)
     events.record(db, midway.participant, key="x", kind="problem", position=3)
     found = dashboard.summary(db, study)
     assert [(p.step, p.number, p.total) for p in found.people] == [
         *(("thanks", 0, 0), ("consent", 0, 0), ("trial", 2, 3), ("consent", 0, 0)),
-        ("withdrawn", 0, 0),
     ]
+    assert [(one.step, one.simulated) for one in found.withdrawals] == [("consent", False)]
+    assert found.real.outcomes == {"completed": 1, "screened_out": 0, "failed_checks": 0}
     assert found.people[0].public_id == walked.participant.public_id
     assert (found.real.arrived, found.real.completed, found.real.withdrawn) == (4, 1, 1)
     assert (found.real.here, found.real.trials) == (2, 4)

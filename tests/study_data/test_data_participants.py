@@ -1,17 +1,15 @@
-"""Participants: known by token alone, kept alive by signs of life, erased on request."""
+"""Participants: known by token alone, kept alive by signs of life, a random pseudonym to us."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
-import pytest
 from sqlalchemy import text
 
-from study.data import answers, events, participants, progress
+from study.data import participants
 from study.data.database import Database
 from study.data.devices import read_device
-from study.data.refusals import WithdrawnError
 from study.data.studies import Study
 
 
@@ -70,40 +68,6 @@ def test_signs_of_life_within_seconds_are_not_written(db: Database, walk: Any, c
     assert participants.seen(db, walk.participant) is walk.participant
     clock.move(seconds=6)
     assert participants.seen(db, walk.participant).last_seen_at == clock.now
-
-
-def test_withdrawing_erases_everything_but_the_date(db: Database, walk: Any, clock: Any) -> None:
-    walk.begin()
-    walk.answer(1, comments="private words", rating_left="1")
-    clock.move(minutes=1)
-    participants.withdraw(db, walk.participant)
-    participants.withdraw(db, walk.participant)
-    with db.reading() as session:
-        left = {
-            table: session.execute(text(f"SELECT count(*) FROM {table}")).scalar_one()
-            for table in ("events", "trials", "sessions", "participants")
-        }
-        row = session.execute(text("SELECT * FROM participants")).mappings().one()
-    assert left == {"events": 0, "trials": 0, "sessions": 0, "participants": 1}
-    assert row["consented_at"] is row["size"] is row["completion_code"] is None
-    gone = participants.by_token(db, walk.token)
-    assert gone is not None
-    assert gone.withdrawn_at == clock.now
-    assert progress.current_step(db, gone).name == "withdrawn"
-
-
-def test_nothing_is_stored_about_somebody_who_withdrew(db: Database, walk: Any) -> None:
-    walk.begin()
-    participants.withdraw(db, walk.participant)
-    attempts = [
-        lambda: events.record(db, walk.participant, key="x", kind="problem"),
-        lambda: answers.store(db, walk.participant, 1, {}, key="x"),
-        lambda: progress.give_consent(db, walk.participant, key="x"),
-        lambda: participants.seen(db, walk.participant, device={}),
-    ]
-    for attempt in attempts:
-        with pytest.raises(WithdrawnError, match="nothing more is stored"):
-            attempt()
 
 
 def test_a_browser_may_say_anything_about_itself() -> None:
