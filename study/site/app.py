@@ -18,6 +18,7 @@ from study.settings import Settings
 from study.site import (
     about,
     beginning,
+    calibration,
     clips,
     consent,
     dashboard,
@@ -25,6 +26,7 @@ from study.site import (
     door,
     downloads,
     ending,
+    eyesight,
     gallery,
     health,
     invitations,
