@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,11 +13,15 @@ from study.design.parts import read_size
 from study.design.pauses import Attention
 from study.design.pixels import median_iris_px
 from study.design.questions import (
+    AnalogueQuestion,
+    Asked,
+    MultipleQuestion,
     NumberQuestion,
     Question,
     TextQuestion,
     Value,
     accepted_values,
+    each_asked,
 )
 
 
@@ -38,9 +43,10 @@ def about_answers(
     definition: StudyDefinition, observer: Observer, rng: np.random.Generator
 ) -> dict[str, Value | None]:
     """Answer a study's questions about the participant."""
-    choices = {q.id: [str(v) for v in accepted_values(q)] for q in definition.about}
+    asked = each_asked(definition.about)
+    choices = {q.id: [str(v) for v in accepted_values(q)] for q in asked}
     known = observer.about_you(rng, {name: values for name, values in choices.items() if values})
-    return {q.id: _fitting(q, known.get(q.id), rng) for q in definition.about}
+    return {q.id: _fitting(q, known.get(q.id), rng) for q in asked}
 
 
 def trial_answers(
@@ -59,23 +65,38 @@ def trial_answers(
         q.id: known[q.id]
         if q.id in known and not (q.is_required and known[q.id] is None)
         else _fitting(q, None, rng)
-        for q in questions
+        for q in each_asked(questions)
     }
 
 
-def _fitting(question: Question, known: Value | None, rng: np.random.Generator) -> Value | None:
+def _fitting(question: Asked, known: Value | None, rng: np.random.Generator) -> Value | None:
     """Return ``known`` if the question takes it, else an answer drawn from what it takes."""
     values = accepted_values(question)
+    if isinstance(question, MultipleQuestion):
+        return _ticked(question, rng)
     if values:
         return known if known in values else values[int(rng.integers(len(values)))]
-    if isinstance(question, NumberQuestion):
-        low, high = question.minimum, question.maximum
-        return (
-            min(high, max(low, int(known)))
-            if isinstance(known, int)
-            else int(rng.integers(low, high + 1))
-        )
+    if isinstance(question, NumberQuestion | AnalogueQuestion):
+        return _number(question, known, rng)
     return str(known) if isinstance(question, TextQuestion) and known is not None else None
+
+
+def _ticked(question: MultipleQuestion, rng: np.random.Generator) -> list[str]:
+    """Tick as many as the question asks for, in the file's order."""
+    free = [option.value for option in question.options if not option.is_exclusive]
+    chosen = rng.choice(len(free), size=min(question.fewest, len(free)), replace=False)
+    return [free[int(index)] for index in sorted(chosen)] or [question.options[0].value]
+
+
+def _number(
+    question: NumberQuestion | AnalogueQuestion, known: Value | None, rng: np.random.Generator
+) -> int | float:
+    low, high = question.minimum, question.maximum
+    if isinstance(known, int):
+        return min(high, max(low, known))
+    if isinstance(question, NumberQuestion) and question.decimals:
+        return round(float(rng.uniform(low, high)), question.decimals)
+    return int(rng.integers(math.ceil(low), math.floor(high) + 1))
 
 
 def attention_answer(
@@ -85,4 +106,5 @@ def attention_answer(
     if asked is None:
         return {}
     has_read = rng.random() >= observer.population.lapse
-    return {asked.question.id: _fitting(asked.question, asked.expected if has_read else None, rng)}
+    known = asked.expected if has_read else None
+    return {one.id: _fitting(one, known, rng) for one in each_asked([asked.question])}

@@ -70,9 +70,9 @@ def take_part(
 ) -> str:
     """Walk one simulated person through the pages; returns the completion code."""
     observer = draw_observer(rng)
-    statements = max(1, len(definition.consent.statements))
+    ticks = [str(number + 1) for number in range(definition.consent.tick_count)]
     browser.get("/consent")
-    browser.post("/consent", {"agree": [str(n + 1) for n in range(statements)]})
+    browser.post("/consent", {"agree": ticks, "health": "yes"})
     if browser.page.path == "/about-you":
         browser.post("/about-you", _filled(about_answers(definition, observer, rng)))
     browser.post("/instructions", {})
@@ -161,6 +161,9 @@ def _response_ms(answer: Answer) -> int:
     return max(1, answer.response_ms)
 
 
-def _filled(answers: Mapping[str, Value | None]) -> dict[str, str]:
-    """Return what a form sends: a skipped question is empty."""
-    return {name: "" if value is None else str(value) for name, value in answers.items()}
+def _filled(answers: Mapping[str, Value | None]) -> dict[str, str | list[str]]:
+    """Return what a form sends: a skipped question is empty, what is ticked is a list."""
+    return {
+        name: value if isinstance(value, list) else "" if value is None else str(value)
+        for name, value in answers.items()
+    }

@@ -18,7 +18,7 @@ from study.data.studies import by_id
 from study.data.trials import AMENDED, ANSWERED, Trial, trials_of
 from study.data.views import check_reached, start
 from study.design.definition import StudyDefinition
-from study.design.questions import Value, read_answers
+from study.design.questions import Value, each_asked, read_answers
 
 
 @dataclass(frozen=True)
@@ -94,5 +94,5 @@ def _read(
         raise NotWatchedError(
             f"the clip has to be watched to the end {needed} x first; so far {state.views} x"
         )
-    every = dict.fromkeys(question.id for question in definition.questions)
+    every = dict.fromkeys(question.id for question in each_asked(definition.questions))
     return read_answers(definition.questions, {**every, **state.answers, **given})

@@ -6,46 +6,30 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from analysis import Column, codebook, column_names
+from study.data import own_answers
 from study.data.studies import Study
 from study.design.definition import StudyDefinition
-from study.design.questions import (
-    STANDARD,
-    ChoiceQuestion,
-    NumberQuestion,
-    Question,
-    ScaleQuestion,
-    accepted_values,
-)
+from study.design.questions import STANDARD, ChoiceQuestion, accepted_values, each_asked
+from study.design.recruiting import Parameter
 
 
 def own_columns(definition: StudyDefinition) -> dict[str, list[Column]]:
     """Return the columns of questions that only this study asks."""
     return {
-        "comparisons": [_column(q) for q in definition.questions if q.id not in STANDARD],
+        "ratings": own_answers.eye_columns(definition.questions),
+        "comparisons": own_answers.own_columns(
+            definition.questions, own_answers.ids_of_eyes(definition.questions) | set(STANDARD)
+        ),
         "participants": [
-            _column(q) for q in definition.about if q.id not in column_names("participants")
+            *own_answers.own_columns(definition.about, column_names("participants")),
+            *(_parameter(p) for p in definition.entrance.parameters if p.is_exported),
         ],
     }
 
 
-def _column(question: Question) -> Column:
-    if isinstance(question, ScaleQuestion):
-        return Column(
-            question.id, "integer", question.text, low=question.lowest, high=question.highest
-        )
-    if isinstance(question, NumberQuestion):
-        return Column(
-            question.id,
-            "integer",
-            question.text,
-            question.unit,
-            low=question.minimum,
-            high=question.maximum,
-        )
-    if isinstance(question, ChoiceQuestion):
-        choices = tuple(map(str, accepted_values(question)))
-        return Column(question.id, "category", question.text, choices=choices)
-    return Column(question.id, "text", question.text)
+def _parameter(parameter: Parameter) -> Column:
+    told = "" if parameter.store == "plain" else ", as a keyed hash"
+    return Column(parameter.name, "text", f"{parameter.name} of the address they came by{told}")
 
 
 _LOD_COLUMNS: Final = ("lod", "other_lod", "left_lod", "right_lod")
@@ -58,7 +42,7 @@ def codebook_of(study: Study, more: Mapping[str, Sequence[Column]]) -> dict[str,
         "distance": list(definition.distances),
         **{name: list(definition.lods) for name in _LOD_COLUMNS},
     }
-    for question in (*definition.about, *definition.questions):
+    for question in each_asked((*definition.about, *definition.questions)):
         if isinstance(question, ChoiceQuestion) and question.id not in STANDARD:
             accepted[question.id] = [str(value) for value in accepted_values(question)]
     about = {

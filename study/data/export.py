@@ -49,7 +49,7 @@ def tables(db: Database, study: Study) -> Tables:
     participants = [participant_row(study, person) for person in people]
     more = own_columns(definition)
     return Tables(
-        ratings=_frame("ratings", ratings),
+        ratings=_frame("ratings", ratings, more["ratings"]),
         comparisons=_frame("comparisons", comparisons, more["comparisons"]),
         participants=_frame("participants", participants, more["participants"]),
         codebook=codebook_of(study, more),

@@ -14,7 +14,7 @@ from study.data.studies import Study
 from study.data.trials import PLAYED, complete_plays
 from study.design.certificate import Certificate, Verdict, judge_trial
 from study.design.definition import StudyDefinition
-from study.design.questions import TextQuestion, is_shown
+from study.design.questions import TextQuestion, each_asked, is_shown
 
 PROBLEM = "problem"
 
@@ -107,7 +107,7 @@ def _asked_and_missing(
 ) -> tuple[int, int]:
     asked = missing = 0
     for trial in done:
-        for question in definition.questions:
+        for question in each_asked(definition.questions):
             answers = trial.trial.answers
             if isinstance(question, TextQuestion) or not is_shown(question, answers):
                 continue

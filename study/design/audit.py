@@ -5,34 +5,56 @@ The facts about pairings come from ``analysis.audit``, which says the same in th
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from math import ceil
 from typing import Final
 
 from analysis.audit import Audit, ShownClip, audit_design
 from renderer.camera import iris_px, iris_px_of_frame
 from renderer.detail import EFFECTS
 from study.design.definition import StudyDefinition
+from study.design.duration import minutes, visit_parts
 from study.design.pairings import Clip
 from study.design.parts import Size
+from study.design.questions import each_asked
+from study.design.schedule import order_rows
 from study.design.visibility import hidden_effects
 
-TRIAL_S: Final = 45.0  # watch a five-second clip once or twice, answer six questions
-BEFORE_S: Final = 180.0  # consent, questions about you, instructions
 LONG_MIN: Final = 30.0  # BT.500 ends a sitting here
 
 
 def audit(definition: StudyDefinition) -> Audit:
-    """Return the design's facts over all LoDs and distances that the file names."""
+    """Return the design's facts over the file's distances and LoDs, irises taken together.
+
+    A LoD that only practice and gold clips show is no part of the design.
+    """
     shown = audit_design(
-        ShownClip(clip.id, clip.distance, clip.left, clip.right) for clip in definition.trial_clips
+        ShownClip(clip.pairing, clip.distance, clip.left, clip.right)
+        for clip in _pairings(definition)
     )
-    return replace(shown, distances=definition.distances, lods=tuple(definition.lods))
+    return replace(shown, distances=definition.distances, lods=_studied(definition))
+
+
+def _pairings(definition: StudyDefinition) -> list[Clip]:
+    """Return the trials' clips, of those that differ in the iris alone the first."""
+    firsts: dict[tuple[str, ...], Clip] = {}
+    for clip in definition.trial_clips:
+        firsts.setdefault(clip.condition if clip.iris else (clip.id,), clip)
+    return list(firsts.values())
+
+
+def _studied(definition: StudyDefinition) -> tuple[str, ...]:
+    around = {
+        lod for clip in (*definition.practice, *definition.gold) for lod in (clip.left, clip.right)
+    }
+    shown = {lod for clip in definition.trial_clips for lod in (clip.left, clip.right)}
+    return tuple(lod for lod in definition.lods if lod in shown or lod not in around)
 
 
 def cell_table(definition: StudyDefinition) -> list[str]:
     """Return lines that count, per distance and LoD, the eyes that the trials show."""
-    lods, rows = list(definition.lods), definition.distances
+    lods, rows = _studied(definition), definition.distances
     eyes = [
         (clip.distance, lod) for clip in definition.trial_clips for lod in (clip.left, clip.right)
     ]
@@ -47,17 +69,35 @@ def cell_table(definition: StudyDefinition) -> list[str]:
 
 def statements(definition: StudyDefinition) -> list[str]:
     """Say in sentences what the design shows and what it cannot answer."""
-    trials, practice = len(definition.trial_clips), len(definition.practice)
-    return [
-        f"One visit has {trials + practice} clips ({practice} for practice) and takes about "
-        f"{round(minutes(definition))} minutes.",
-        *audit(definition).statements(),
-    ]
+    return [_visit(definition), *_plan(definition), *audit(definition).statements()]
 
 
-def minutes(definition: StudyDefinition) -> float:
-    """Estimate how long one visit takes."""
-    return (BEFORE_S + TRIAL_S * len(definition.every_clip)) / 60
+def _visit(definition: StudyDefinition) -> str:
+    """Say how many clips one visit has, and how long it takes."""
+    practice, gold = len(definition.practice), len(definition.gold)
+    kinds = [f"{practice} for practice", *([f"{gold} gold"] if gold else [])]
+    parts = [f"{name} {ceil(seconds)} s" for name, seconds in visit_parts(definition).items()]
+    return (
+        f"One visit has {practice + definition.trial_count} clips ({', '.join(kinds)}) and takes "
+        f"about {minutes(definition):.1f} minutes ({', '.join(parts)})."
+    )
+
+
+def _plan(definition: StudyDefinition) -> Iterator[str]:
+    """Say how clips and orders are shared out over people."""
+    blocks, directions = len(definition.blocks), len(definition.orbit.directions)
+    if definition.per_person is not None:
+        yield (
+            f"One person sees {len(definition.blocks[0])} of {len(definition.trial_clips)} clips. "
+            f"{blocks} blocks x {directions} directions are {blocks * directions} arms: after so "
+            "many people every clip was shown equally often in each direction."
+        )
+    if rows := len(order_rows(definition)):
+        things = "kinds of trial" if definition.per_person else "clips"
+        yield (
+            f"Orders are {rows} rows of a Williams design: after {rows} people the {things} stood "
+            "at every place, and each came right after each other, equally often."
+        )
 
 
 def warnings(definition: StudyDefinition) -> list[str]:
@@ -80,7 +120,7 @@ def _general(definition: StudyDefinition) -> Iterator[str]:
         )
     if minutes(definition) > LONG_MIN:
         yield f"clips: a visit of about {round(minutes(definition))} minutes tires people"
-    asked = {question.id for question in definition.questions}
+    asked = {question.id for question in each_asked(definition.questions)}
     for name in ("rating_left", "rating_right", "comparison", "noticed"):
         if name not in asked:
             yield f"questions: none is called {name}; the analysis goes without it"
@@ -100,7 +140,8 @@ def _general(definition: StudyDefinition) -> Iterator[str]:
 
 def _hidden(definition: StudyDefinition) -> Iterator[str]:
     """Warn of effects whose difference is smaller than a pixel, clip by clip."""
-    for clip in definition.trial_clips:
+    for alike in _both_ways(definition):
+        clip = alike[0]
         one, other = definition.detail(clip.left), definition.detail(clip.right)
         differing = [e for e in EFFECTS if getattr(one, e) != getattr(other, e)]
         for size in definition.sizes:
@@ -110,10 +151,24 @@ def _hidden(definition: StudyDefinition) -> Iterator[str]:
                 continue
             listed = ", ".join(f"{e} (from {s.iris_px:g} px)" for e, s in hidden.items())
             line = (
-                f"clip {clip.id} ({clip.distance}, {clip.left} | {clip.right}) at {size}: the iris "
-                f"is {diameter:.0f} px wide; differences smaller than a pixel: {listed}"
+                f"{_named(alike)} ({clip.distance}, {clip.left} | {clip.right}) at {size}: the "
+                f"iris is {diameter:.0f} px wide; differences smaller than a pixel: {listed}"
             )
             yield line + ("; nothing else differs" if set(differing) == set(hidden) else "")
+
+
+def _both_ways(definition: StudyDefinition) -> list[list[Clip]]:
+    """Return the pairings, those that differ in their sides alone together."""
+    alike: dict[tuple[object, ...], list[Clip]] = {}
+    for clip in _pairings(definition):
+        key = (clip.distance, frozenset((clip.left, clip.right)), clip.motion)
+        alike.setdefault(key, []).append(clip)
+    return list(alike.values())
+
+
+def _named(clips: Sequence[Clip]) -> str:
+    names = [clip.pairing for clip in clips]
+    return f"clip{'s' if len(names) > 1 else ''} {' and '.join(names)}"
 
 
 def largest_iris_px(definition: StudyDefinition, clip: Clip, size: Size) -> float:

@@ -16,6 +16,8 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 Place = tuple[str | int, ...]
+# What tables are told apart by: the kinds of question (``question_kinds``).
+KINDS: Final = ("choice", "multiple", "scale", "analogue", "number", "text", "matrix")
 
 
 @dataclass(frozen=True, order=True)
@@ -82,12 +84,10 @@ def _fault(details: ErrorDetails, model: type[BaseModel]) -> Fault:
     if kind == "missing":
         return Fault(dotted(place), "missing; this key is required")
     if kind == "union_tag_not_found":
-        return Fault(dotted((*place, "kind")), "missing; choose one of choice, scale, number, text")
+        return Fault(dotted((*place, "kind")), f"missing; choose one of {', '.join(KINDS)}")
     if kind == "union_tag_invalid":
         found = str(context.get("tag"))
-        return Fault(
-            dotted((*place, "kind")), unknown("kind", found, ("choice", "scale", "number", "text"))
-        )
+        return Fault(dotted((*place, "kind")), unknown("kind", found, KINDS))
     if kind == "study":
         return Fault(dotted(place), str(context["message"]))
     words = _EXPECTED.get(kind)

@@ -105,6 +105,7 @@ def contents_sha256(path: Path) -> str:
 # What definitions of an earlier version did not hold, with what it is when it is left out.
 _LATER: Final[Mapping[str, Any]] = {
     "translations": {},
+    **{"labels": (), "decimals": 0, "at_least": None, "at_most": None},
     "lod_policy": None,
     "motion": "orbit",
     "switching": None,

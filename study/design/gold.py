@@ -26,6 +26,8 @@ class Expected(Part):
 
     def is_met(self, answer: Value) -> bool:
         """Say whether an answer is the expected one."""
+        if isinstance(answer, list):
+            return str(self.value) in answer
         if isinstance(answer, str) or isinstance(self.value, str):
             return str(answer) == str(self.value)
         return abs(answer - self.value) <= self.tolerance

@@ -65,6 +65,9 @@ def check_pauses(data: Data) -> Iterator[Fault]:
     for index, row in rows_of(data, "attention"):
         question = table_of(row, "question")
         yield from check_expected(question, row.get("expected"), ("attention", index, "expected"))
+        if question.get("kind") in ("multiple", "matrix"):
+            place = dotted(("attention", index, "question", "kind"))
+            yield Fault(place, "such a question has one answer; use choice, scale, number or text")
         if question.get("shown_if") is not None:
             place = dotted(("attention", index, "question", "shown_if"))
             yield Fault(place, "such a question stands alone; leave this out")

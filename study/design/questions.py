@@ -1,4 +1,4 @@
-"""Questions of a study: choice, scale, number, text; and what counts as an answer to each.
+"""What counts as an answer to a question, and which questions the tables have columns for.
 
 Pure. A question's ``id`` is its column: the ids in ``STANDARD`` are those that the tables and the
 analysis know; answers to any other id are exported beside them.
@@ -6,79 +6,49 @@ analysis know; answers to any other id are exported beside them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Final, Literal
+from typing import Final
 
-from pydantic import Field
-
-from study.design.parts import Flag, MaybeText, Name, Part, StoredText, Text, Whole
+from study.design.question_kinds import (
+    AnalogueQuestion,
+    Asked,
+    ChoiceQuestion,
+    MatrixQuestion,
+    MultipleQuestion,
+    NumberQuestion,
+    Option,
+    Question,
+    ScaleQuestion,
+    ShownIf,
+    TextQuestion,
+    Value,
+    each_asked,
+)
 from study.design.reasons import Reason, UnfitError
 
-Value = int | float | str
-MAX_TEXT_CHARS: Final = 10_000
-
-
-class Option(Part):
-    """One answer of a choice: what is stored and what is read on the page."""
-
-    value: Whole | StoredText
-    label: Text
-
-
-class ShownIf(Part):
-    """Show a question only after another one was answered with one of these values."""
-
-    question: Name
-    values: Annotated[tuple[Whole | StoredText, ...], Field(min_length=1)]
-
-
-class _Question(Part):
-    """What all questions have. ``is_required`` is false unless the file says otherwise."""
-
-    id: Name
-    text: Text
-    help: MaybeText = ""
-    is_required: Flag = False
-    shown_if: ShownIf | None = None
-
-
-class ChoiceQuestion(_Question):
-    """Pick one of a few."""
-
-    kind: Literal["choice"]
-    options: Annotated[tuple[Option, ...], Field(min_length=2)]
-
-
-class ScaleQuestion(_Question):
-    """Pick a whole number between two named ends."""
-
-    kind: Literal["scale"]
-    lowest: Whole = 1
-    highest: Whole = 5
-    lowest_label: Text
-    highest_label: Text
-
-
-class NumberQuestion(_Question):
-    """Type a whole number within limits."""
-
-    kind: Literal["number"]
-    minimum: Whole
-    maximum: Whole
-    unit: MaybeText = ""
-
-
-class TextQuestion(_Question):
-    """Write in one's own words."""
-
-    kind: Literal["text"]
-    max_chars: Annotated[Whole, Field(ge=1, le=MAX_TEXT_CHARS)] = 2000
-    is_long: Flag = True
-
-
-Question = Annotated[
-    ChoiceQuestion | ScaleQuestion | NumberQuestion | TextQuestion, Field(discriminator="kind")
+__all__ = [
+    "STANDARD",
+    "AnalogueQuestion",
+    "AnswerError",
+    "Asked",
+    "ChoiceQuestion",
+    "MatrixQuestion",
+    "MultipleQuestion",
+    "NumberQuestion",
+    "Option",
+    "Question",
+    "ScaleQuestion",
+    "ShownIf",
+    "Standard",
+    "TextQuestion",
+    "Value",
+    "accepted_values",
+    "each_asked",
+    "is_shown",
+    "read_answer",
+    "read_answers",
 ]
 
 
@@ -87,7 +57,7 @@ class Standard:
     """A question that the tables have a column for: its kind and the values of that column."""
 
     kind: str
-    values: tuple[Value, ...] = ()
+    values: tuple[int | str, ...] = ()
 
 
 STANDARD: Final[Mapping[str, Standard]] = {
@@ -112,9 +82,9 @@ class AnswerError(ValueError):
         return {name: text(why.key, **why.values) for name, why in self.faults.items()}
 
 
-def accepted_values(question: Question) -> tuple[Value, ...]:
-    """Return the values that a choice or scale can take; empty for number and text."""
-    if isinstance(question, ChoiceQuestion):
+def accepted_values(question: Question) -> tuple[int | str, ...]:
+    """Return the values that a choice or scale can take; empty for all else."""
+    if isinstance(question, ChoiceQuestion | MultipleQuestion):
         return tuple(option.value for option in question.options)
     if isinstance(question, ScaleQuestion):
         return tuple(range(question.lowest, question.highest + 1))
@@ -131,7 +101,7 @@ def read_answers(
     never what is thrown away. With ``is_final`` required questions that are shown must be answered.
     Raises AnswerError with every fault at once.
     """
-    by_id = {question.id: question for question in questions}
+    by_id = {question.id: question for question in each_asked(questions)}
     faults = dict.fromkeys(given.keys() - by_id, Reason("answer.unknown"))
     answers: dict[str, Value | None] = {}
     for name, question in by_id.items():
@@ -143,7 +113,7 @@ def read_answers(
     if is_final:
         faults |= {
             question.id: Reason("answer.required")
-            for question in questions
+            for question in by_id.values()
             if question.is_required
             and question.id not in faults
             and is_shown(question, answers)
@@ -157,11 +127,23 @@ def read_answers(
 def is_shown(question: Question, answers: Mapping[str, Value | None]) -> bool:
     """Say whether a question's rule lets it be shown after these answers."""
     rule = question.shown_if
-    return rule is None or answers.get(rule.question) in rule.values
+    if rule is None:
+        return True
+    answer = answers.get(rule.question)
+    if isinstance(answer, list):
+        return any(one in rule.values for one in answer)
+    if answer in rule.values:
+        return True
+    if rule.values or answer is None or isinstance(answer, str):
+        return False
+    low, high = rule.at_least, rule.at_most
+    return (low is None or answer >= low) and (high is None or answer <= high)
 
 
-def read_answer(question: Question, given: object) -> Value | None:
+def read_answer(question: Asked, given: object) -> Value | None:
     """Read one answer; None when skipped. Raises UnfitError with the reason."""
+    if isinstance(question, MultipleQuestion):
+        return _read_ticks(question, given if isinstance(given, list | tuple) else [given])
     if given is None or (isinstance(given, str) and not given.strip()):
         return None
     text = str(given).strip()
@@ -169,10 +151,30 @@ def read_answer(question: Question, given: object) -> Value | None:
         return _read_text(question, text)
     if isinstance(question, NumberQuestion):
         return _read_number(question, text)
+    if isinstance(question, AnalogueQuestion):
+        return _read_place(question, text)
     for value in accepted_values(question):
         if text == str(value):
             return value
     raise UnfitError(Reason("answer.choose"))
+
+
+def _read_ticks(question: MultipleQuestion, given: Sequence[object]) -> list[str] | None:
+    """Return the ticked values in the file's order; nothing ticked is a skipped question."""
+    ticked = {str(value).strip() for value in given if value is not None} - {""}
+    chosen = [option for option in question.options if option.value in ticked]
+    if len(chosen) < len(ticked):
+        raise UnfitError(Reason("answer.choose"))
+    if not chosen:
+        return None
+    alone = next((option for option in chosen if option.is_exclusive), None)
+    if alone is not None and len(chosen) > 1:
+        raise UnfitError(Reason("answer.alone", {"option": alone.label}))
+    if question.most is not None and len(chosen) > question.most:
+        raise UnfitError(Reason("answer.at_most", {"count": question.most}))
+    if len(chosen) < question.fewest and alone is None:
+        raise UnfitError(Reason("answer.at_least", {"count": question.fewest}))
+    return [option.value for option in chosen]
 
 
 def _read_text(question: TextQuestion, text: str) -> str | None:
@@ -185,13 +187,30 @@ def _read_text(question: TextQuestion, text: str) -> str | None:
     return cleaned or None  # a text of nothing but such characters is a skipped question
 
 
-def _read_number(question: NumberQuestion, text: str) -> int:
-    limits = {"lowest": question.minimum, "highest": question.maximum}
-    accepted = UnfitError(Reason("answer.whole_number", limits))
-    try:
-        value = int(text)
-    except ValueError:
-        raise accepted from None
+# Digits of any script; a point, a comma or the Arabic decimal mark before decimals.
+_NUMBER: Final = re.compile(r"([+-]?\d{1,15})(?:[.,٫](\d{1,15}))?")
+
+
+def _read_number(question: NumberQuestion, text: str) -> int | float:
+    limits: dict[str, object] = {"lowest": question.minimum, "highest": question.maximum}
+    key = "answer.number" if question.decimals else "answer.whole_number"
+    refusal = UnfitError(Reason(key, {**limits, **_places(question)}))
+    found = _NUMBER.fullmatch(text.replace("−", "-"))
+    if found is None or len(found[2] or "") > question.decimals:
+        raise refusal
+    value = float(f"{found[1]}.{found[2] or 0}")
     if not question.minimum <= value <= question.maximum:
-        raise accepted
+        raise refusal
+    return value if question.decimals else int(value)
+
+
+def _places(question: NumberQuestion) -> dict[str, object]:
+    return {"count": question.decimals} if question.decimals else {}
+
+
+def _read_place(question: AnalogueQuestion, text: str) -> int:
+    found = _NUMBER.fullmatch(text)
+    value = None if found is None or found[2] else int(found[1])
+    if value is None or not question.minimum <= value <= question.maximum:
+        raise UnfitError(Reason("answer.choose"))
     return value

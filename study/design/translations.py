@@ -19,7 +19,7 @@ from pydantic.fields import FieldInfo
 
 from study.design.faults import Fault, suggestion
 from study.design.parts import Part, Translated
-from study.design.questions import Option
+from study.design.question_kinds import Labelled
 from study.design.raw import Data
 
 Words = Mapping[str, Any]
@@ -68,7 +68,7 @@ def _name_of(part: Part, index: int) -> str:
 
 def _place(part: Part, name: str, place: str) -> str:
     """Return where a text stands; an option is its label: ``options = { yes = "Oui" }``."""
-    return place.removesuffix(".") if isinstance(part, Option) else f"{place}{name}"
+    return place.removesuffix(".") if isinstance(part, Labelled) else f"{place}{name}"
 
 
 def _mark(field: FieldInfo) -> Translated | None:

@@ -7,7 +7,7 @@ from typing import Final
 
 from fastapi import Request
 
-from study.design.questions import Question
+from study.design.questions import MultipleQuestion, Question, each_asked
 
 # A whole questionnaire of the longest texts stays far below; more is no form of ours.
 MAX_FORM_BYTES: Final = 256 * 1024
@@ -48,5 +48,10 @@ def first(fields: Mapping[str, Sequence[str]], name: str) -> str:
 def answers_in(
     fields: Mapping[str, Sequence[str]], questions: Sequence[Question]
 ) -> dict[str, object]:
-    """Return question id -> posted text of every question; one left out was skipped."""
-    return {question.id: first(fields, question.id) for question in questions}
+    """Return question id -> what was posted for each; one left out was skipped."""
+    return {
+        question.id: list(fields.get(question.id, ()))
+        if isinstance(question, MultipleQuestion)
+        else first(fields, question.id)
+        for question in each_asked(questions)
+    }

@@ -120,11 +120,11 @@ CASES: list[tuple[Change, str]] = [
     (lambda raw: raw.update(title="  "), "title: empty; write some text or leave the key out"),
     (
         lambda raw: raw["questions"][0].pop("kind"),
-        "questions.0.kind: missing; choose one of choice, scale, number, text",
+        "questions.0.kind: missing; choose one of choice, multiple, scale, analogue, number, text, matrix",
     ),
     (
         lambda raw: raw["about"][0].update(kind="numbre"),
-        'about.0.kind: unknown kind "numbre"; choose one of choice, scale, number, text; did you '
+        'about.0.kind: unknown kind "numbre"; choose one of choice, multiple, scale, analogue, number, text, matrix; did you '
         'mean "number"?',
     ),
     (
