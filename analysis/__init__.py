@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from analysis.audit import Audit, ShownClip, audit_design
     from analysis.charts import CHARTS, Chart, figures
+    from analysis.column import Column
     from analysis.observers import Answer, Observer, Stimulus, draw_observer
     from analysis.parsing import TableError
     from analysis.publish import Summary, analyse
     from analysis.reading import Tables, read_source, tables_from
     from analysis.table import (
         COLUMNS,
-        Column,
         accepted_in,
         codebook,
         column_names,
@@ -28,11 +28,12 @@ if TYPE_CHECKING:
 _HOMES = {
     "audit": ("Audit", "ShownClip", "audit_design"),
     "charts": ("CHARTS", "Chart", "figures"),
+    "column": ("Column",),
     "observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
     "parsing": ("TableError",),
     "publish": ("Summary", "analyse"),
     "reading": ("Tables", "read_source", "tables_from"),
-    "table": ("COLUMNS", "Column", "accepted_in", "codebook", "column_names", "columns_of"),
+    "table": ("COLUMNS", "accepted_in", "codebook", "column_names", "columns_of"),
 }
 
 __all__ = [

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from analysis.table import Column
+from analysis.column import Column
 
 _FIRST_ROW: Final = 2
 _SHOWN_FAULTS: Final = 50
