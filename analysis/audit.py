@@ -17,7 +17,6 @@ from analysis.ordering import natural
 from analysis.table import DISTANCES, STANDARD_LODS
 from analysis.wording import listed
 
-
 MOST_LISTED: Final = 6  # more names than these are a number
 
 

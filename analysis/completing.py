@@ -78,6 +78,8 @@ def _complete(rows: pd.DataFrame, participants: pd.DataFrame) -> pd.DataFrame:
             table["participant"].map(known).astype("boolean")
         )
     table["simulated"] = table["simulated"].fillna(False).astype(bool)
-    table["is_practice"] = table["is_practice"].fillna(False).astype(bool)
+    table["is_gold"] = table["is_gold"].fillna(False).astype(bool)
+    # A gold trial says who looks and nothing about LoDs: it is left out wherever practice is.
+    table["is_practice"] = table["is_practice"].fillna(False).astype(bool) | table["is_gold"]
     table["distance"] = table["distance"].fillna(UNSTATED)
     return table

@@ -78,9 +78,12 @@ def quality_statements(tables: Tables) -> list[str]:
     """Say in sentences what a reader must know about the data behind the figures."""
     ratings = tables.ratings
     text = list(tables.notes)
-    practice = int(ratings["is_practice"].sum())
-    if practice:
-        text.append(f"Ratings of practice trials, not counted: {practice}.")
+    for kind, rows in (
+        ("practice", ratings["is_practice"] & ~ratings["is_gold"]),
+        ("gold", ratings["is_gold"]),
+    ):
+        if rows.any():
+            text.append(f"Ratings of {kind} trials, not counted: {int(rows.sum())}.")
     counted = ratings[~ratings["is_practice"]]
     missing = int(counted["rating"].isna().sum())
     if missing:

@@ -63,11 +63,20 @@ _TRIAL: Final = (
         "the camera's way around the head, as the viewer sees it",
         choices=("rightward", "leftward"),
     ),
+    Column("iris", "text", "name of the iris in the study's definition, where it has several"),
+    Column("iris_seed", "integer", "number from which the iris was made", low=0),
+    Column("iris_colour", "text", 'colour of the iris; "photograph" if it was taken from one'),
 )
 
 _CIRCUMSTANCES: Final = (
     Column("is_practice", "boolean", "true for a practice trial; left out of every analysis"),
     Column("is_catch", "boolean", "true if both eyes had the same LoD"),
+    Column("is_warm_up", "boolean", "true for one of the first trials, as the study flags them"),
+    Column(
+        "is_gold",
+        "boolean",
+        "true for an obvious pair that only shows who looks; left out of every analysis",
+    ),
     Column("certified", "boolean", "true if the clip's presentation passed the study's rule"),
     Column(
         "uncertified_because",
@@ -151,6 +160,13 @@ PARTICIPANTS: Final = (
     Column("user_agent_family", "text", "family of the browser"),
     *CHECKS,
     Column("arm", "text", "arm of the schedule that the participant was assigned to"),
+    Column("block", "integer", "which share of the study's clips the participant saw", low=1),
+    Column("order_row", "integer", "row of the Latin square of orders", low=1),
+    Column("order_code", "text", "from which ocularist check --order tells the trials again"),
+    Column("gold_passed", "integer", "gold trials answered as expected", "trial", low=0),
+    Column("gold_failed", "integer", "gold trials answered otherwise", "trial", low=0),
+    Column("attention_passed", "integer", "attention questions answered as told", low=0),
+    Column("attention_failed", "integer", "attention questions answered otherwise", low=0),
 )
 
 COLUMNS: Final[Mapping[str, tuple[Column, ...]]] = MappingProxyType(

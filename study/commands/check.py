@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import argparse
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from typing import TYPE_CHECKING, Final
 
-from study.commands.options import add_study
+from study.commands.options import add_study, count
 from study.commands.pictures import check_pictures
 
 if TYPE_CHECKING:
     from study.design.definition import StudyDefinition
+    from study.design.pairings import Clip
 
 HELP = "check a study file and audit its design"
 DESCRIPTION = (
@@ -24,6 +26,20 @@ WIDTH: Final = 96
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
     add_study(parser)
+    parser.add_argument(
+        "--people",
+        type=count,
+        nargs="+",
+        default=[12, 24, 48],
+        metavar="N",
+        help="count what so many people would see (default: 12 24 48)",
+    )
+    parser.add_argument(
+        "--order",
+        metavar="CODE",
+        help="only tell the trials of one participant again, in order: the order_code of "
+        "participants.csv",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -32,9 +48,34 @@ def run(options: argparse.Namespace) -> int:
 
     definition = read_definition(options.study)
     check_pictures(definition)
-    for line in [*summary(definition), "", *audit_lines(definition)]:
+    if options.order is not None:
+        lines = order_lines(definition, options.order)
+    else:
+        exposures = exposure_lines(definition, options.people)
+        lines = chain(summary(definition), exposures, audit_lines(definition))
+    for line in lines:
         print(line)
     return 0
+
+
+def order_lines(definition: StudyDefinition, code: str) -> Iterator[str]:
+    """Yield the trials that an order code stands for; raises OrderCodeError."""
+    from study.design.order_codes import read_order_code, trials_of_code
+
+    width = _width(definition)
+    for trial in trials_of_code(definition, read_order_code(code, definition)):
+        warm_up = definition.order.is_warm_up(trial.number, is_practice=trial.is_practice)
+        kind = "practice" if trial.is_practice else "warm-up" if warm_up else "trial"
+        yield f"{_clip_line(f'{kind} {trial.number}', trial.clip, width)}{trial.clip.id}"
+
+
+def exposure_lines(definition: StudyDefinition, people: Sequence[int]) -> Iterator[str]:
+    """Yield how often each thing is shown to so many people, and how evenly."""
+    from study.design.exposure import exposure_table
+
+    yield "How often each thing is shown, to so many people who all finish (rarest to most):"
+    yield from (f"  {line}" for line in exposure_table(definition, people))
+    yield ""
 
 
 def summary(definition: StudyDefinition) -> Iterator[str]:
@@ -42,23 +83,47 @@ def summary(definition: StudyDefinition) -> Iterator[str]:
     wanted = definition.wanted_specs()
     seconds = sum(entry.spec.duration_s for entry in wanted)
     yield f"{definition.title} ({definition.key}, version {definition.version})"
+    files = len({w.spec.clip_id for w in wanted})
     yield (
-        f"{len(definition.trial_clips)} clips and {len(definition.practice)} for practice, in "
+        f"{len(definition.trial_clips)} clips and {len(definition.practice)} for practice"
+        f"{f' and {len(definition.gold)} gold' if definition.gold else ''}, in "
         f"{' and '.join(map(str, definition.sizes))}, "
-        f"{' and '.join(definition.orbit.directions)}: {len({w.spec.clip_id for w in wanted})} "
-        f"files, {seconds:g} s of video"
+        f"{' and '.join(definition.orbit.directions)}: {files} files, {seconds:g} s of video"
     )
+    first = len({clip.id for clip in (*definition.practice, *definition.blocks[0])})
+    yield f"The first participant can start when {first + len(definition.gold)} of them are there"
     yield (
         f"{len(definition.about)} questions about the participant, {len(definition.questions)} "
         "after each clip"
     )
     yield ""
-    width = max(24, *(len(clip.id) + 2 for clip in definition.every_clip))
-    yield f"{'clip':{width}}{'distance':14}{'left':18}{'right':18}"
+    width = _width(definition)
+    iris = "iris" if definition.irises else ""
+    yield f"{'clip':{width}}{'distance':14}{'left':18}{'right':18}{iris}".rstrip()
+    for alike in _with_irises(definition):
+        clip = alike[0]
+        mark = " (catch)" if clip.is_catch else ""
+        mark = " (practice)" if clip in definition.practice else mark
+        mark = " (gold)" if clip in definition.gold else mark
+        irises = ", ".join(one.iris for one in alike if one.iris is not None)
+        yield f"{_clip_line(clip.pairing, clip, width)}{irises}{mark}".rstrip()
+    yield ""
+
+
+def _with_irises(definition: StudyDefinition) -> list[list[Clip]]:
+    """Return the clips, those that differ in their iris alone together."""
+    alike: dict[str, list[Clip]] = {}
     for clip in definition.every_clip:
-        mark = " (practice)" if clip in definition.practice else ""
-        mark = " (catch)" if clip.is_catch else mark
-        yield f"{clip.id:{width}}{clip.distance:14}{clip.left:18}{clip.right:18}{mark}".rstrip()
+        alike.setdefault(clip.pairing, []).append(clip)
+    return list(alike.values())
+
+
+def _width(definition: StudyDefinition) -> int:
+    return max(24, *(len(clip.pairing) + 2 for clip in definition.every_clip))
+
+
+def _clip_line(name: str, clip: Clip, width: int) -> str:
+    return f"{name:{width}}{clip.distance:14}{clip.left:18}{clip.right:18}"
 
 
 def audit_lines(definition: StudyDefinition) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ from sqlalchemy import select
 
 from study.data.checks import CHECKS, done_in
 from study.data.database import Database
+from study.data.pauses import attention_answers
 from study.data.progress import ABOUT
 from study.data.schema import EventRow, ParticipantRow, SessionRow, TrialRow
 from study.data.studies import Study
@@ -31,7 +32,8 @@ class CollectedTrial:
 class Collected:
     """One participant with everything stored about them.
 
-    ``checks`` holds report and facts of every check before the clips that is ``done``.
+    ``checks`` holds report and facts of every check before the clips that is ``done``;
+    ``attention`` the answers to the questions between trials, by their pause.
     """
 
     row: ParticipantRow
@@ -40,6 +42,7 @@ class Collected:
     checks: dict[str, dict[str, Any]]
     sittings: int
     about: dict[str, Value | None]
+    attention: dict[str, Mapping[str, Any]]
     trials: Sequence[CollectedTrial]
 
 
@@ -104,6 +107,7 @@ def _together(
             checks={kind: given for kind, given in others[person.id] if kind in CHECKS},
             sittings=len(own[person.id]),
             about=about[person.id],
+            attention=attention_answers(others[person.id]),
             trials=by_person[person.id],
         )
         for person in people

@@ -65,10 +65,8 @@ def finish(
         return Recorded(True)
 
 
-def attention_answers(found: Iterable[EventRow]) -> dict[str, Mapping[str, Any]]:
-    """Return pause key -> answers of the attention questions among a participant's events."""
-    return {
-        event.payload["pause"]: event.payload["answers"]
-        for event in found
-        if event.kind == ATTENTION
-    }
+def attention_answers(
+    events: Iterable[tuple[str, Mapping[str, Any]]],
+) -> dict[str, Mapping[str, Any]]:
+    """Return pause key -> answers, from kinds and payloads of a participant's events."""
+    return {given["pause"]: given["answers"] for kind, given in events if kind == ATTENTION}

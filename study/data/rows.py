@@ -6,18 +6,25 @@ Pure: from what ``study.data.collection`` has read to plain values. Missing is N
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from datetime import datetime
 from typing import Any, Final
 
 from renderer.detail import lod_rank
-from study.data import angles, devices
+from study.data import angles, devices, own_answers
+from study.data.arms import arm_of
 from study.data.collection import Collected, CollectedTrial
 from study.data.devices import plausible
 from study.data.progress import early_step
+from study.data.schema import ParticipantRow
 from study.data.studies import Study
 from study.data.trials import ANSWERED, complete_plays
+from study.data.validity import tally_of
 from study.design.certificate import judge_trial
 from study.design.definition import StudyDefinition
+from study.design.gold import Gold
+from study.design.order_codes import OrderCode
+from study.design.pairings import Clip
 from study.design.parts import read_size
 from study.design.pixels import median_iris_px
 
@@ -51,8 +58,13 @@ def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row
         "distance": clip.distance,
         **angles.shown(plays, width_px=width_px),
         "orbit_direction": row.orbit_direction,
+        **_iris(study.definition, clip),
         "is_practice": trial.is_practice,
         "is_catch": clip.is_catch,
+        "is_warm_up": study.definition.order.is_warm_up(
+            trial.number, is_practice=trial.is_practice
+        ),
+        "is_gold": isinstance(clip, Gold),
         "certified": verdict.certified,
         "uncertified_because": " ".join(verdict.reasons) or None,
         "dropped_frames": _total(plays, "dropped_frames"),
@@ -83,6 +95,7 @@ def rating_rows(
             "other_lod": lods[other],
             **definition.levels(lods[eye]),
             "rating": collected.trial.answers.get(f"rating_{eye}"),
+            **own_answers.eye_cells(definition.questions, collected.trial.answers, eye),
         }
 
 
@@ -94,7 +107,7 @@ def comparison_row(definition: StudyDefinition, shared: Row, collected: Collecte
         **shared["_iris_deg"][2],
         "left_lod": clip.left,
         "right_lod": clip.right,
-        **collected.trial.answers,
+        **own_answers.cells(definition.questions, collected.trial.answers),
     }
 
 
@@ -107,11 +120,45 @@ def participant_row(study: Study, person: Collected) -> Row:
         "started_at": _iso(row.consented_at),
         "completed_at": _iso(row.completed_at),
         "status": COMPLETED if row.completed_at else step or f"{done} trials",
-        **person.about,
+        "outcome": row.outcome,
+        **own_answers.cells(study.definition.about, person.about),
+        **_arrival(study, row.arrival or {}),
         **{name: person.device.get(name) for name in devices.COLUMNS},
         **{name: fact for check in person.checks.values() for name, fact in check["facts"].items()},
-        "arm": f"{row.size} {row.orbit_direction}" if row.size else None,
+        **_places(row),
+        **_validity(study.definition, person),
     }
+
+
+def _iris(definition: StudyDefinition, clip: Clip) -> Row:
+    eye = definition.eye_of(clip)
+    colour = "photograph" if eye.iris_file else eye.iris_colour
+    return {"iris": clip.iris, "iris_seed": eye.iris_seed, "iris_colour": colour}
+
+
+def _places(row: ParticipantRow) -> Row:
+    """Return a participant's places in the design, from which their trials follow."""
+    arm = arm_of(row)
+    code = OrderCode(row.block, row.order_row, row.seed)
+    return {
+        "arm": None if arm is None else str(arm),
+        "block": row.block,
+        "order_row": row.order_row,
+        "order_code": None if arm is None else str(code),
+    }
+
+
+def _validity(definition: StudyDefinition, person: Collected) -> Row:
+    """Return how gold trials and attention questions went; nothing where a study has none."""
+    found = asdict(tally_of(definition, (c.trial for c in person.trials), person.attention))
+    kinds = {"gold": definition.gold, "attention": definition.attention}
+    return {name: n for name, n in found.items() if kinds[name.partition("_")[0]]}
+
+
+def _arrival(study: Study, arrival: Mapping[str, str]) -> Row:
+    """Return what brought a participant, as far as the study file lets it be exported."""
+    parameters = study.definition.entrance.parameters
+    return {one.name: arrival.get(one.name) for one in parameters if one.is_exported}
 
 
 def _iris_px(

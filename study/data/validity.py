@@ -33,13 +33,11 @@ def tally(session: Session, participant_id: int, definition: StudyDefinition) ->
     """Return a participant's tally."""
     if not definition.gold and not definition.attention:
         return Tally()
-    asked = session.scalars(
-        select(EventRow).where(
-            EventRow.participant_id == participant_id, EventRow.kind == ATTENTION
-        )
-    ).all()
-    mine = trials_of(session, participant_id)
-    return tally_of(definition, mine, attention_answers(asked))
+    query = select(EventRow.kind, EventRow.payload).where(
+        EventRow.participant_id == participant_id, EventRow.kind == ATTENTION
+    )
+    asked = attention_answers((kind, payload) for kind, payload in session.execute(query))
+    return tally_of(definition, trials_of(session, participant_id), asked)
 
 
 def tally_of(

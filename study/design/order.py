@@ -23,6 +23,10 @@ class Order(Part):
     max_views: Annotated[Whole, Field(ge=1, le=100)] | None = None
     warm_up: Annotated[Whole, Field(ge=0)] = 0
 
+    def is_warm_up(self, number: int, *, is_practice: bool) -> bool:
+        """Say whether a trial is one of the first, in which people still find their scale."""
+        return not is_practice and number <= self.warm_up
+
     @model_validator(mode="after")
     def _views_fit(self) -> Self:
         if self.max_views is not None and self.max_views < self.min_views:

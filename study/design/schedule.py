@@ -61,11 +61,6 @@ def order_rows(definition: StudyDefinition) -> tuple[Row, ...]:
     return williams(len(definition.blocks[0]))
 
 
-def is_warm_up(definition: StudyDefinition, trial: ScheduledTrial) -> bool:
-    """Say whether the study flags a trial as one of the first, in which people find their scale."""
-    return not trial.is_practice and trial.number <= definition.order.warm_up
-
-
 def _ordered(
     definition: StudyDefinition, seed: int, *, block: int | None, order_row: int | None
 ) -> list[Clip]:
