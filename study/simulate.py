@@ -49,7 +49,7 @@ def _take_part(db: Database, study: Study, rng: np.random.Generator) -> None:
     person = enrol(
         db, study, simulated=True, rng=rng, recruited_by="simulation", device=_DEVICE
     ).participant
-    steps.give_consent(db, person, key="consent")
+    steps.give_consent(db, person, key="consent", payload={"health": True})
     if definition.about:
         steps.store_about(db, person, about_answers(definition, observer, rng), key="about")
     steps.finish_instructions(db, person, key="instructions")

@@ -17,6 +17,8 @@ from study.design.definition import (
 )
 from study.design.faults import DefinitionError
 from study.design.parts import Size
+from study.site.consent_words import consent_words
+from study.texts import catalogue
 
 
 @pytest.fixture(scope="module")
@@ -54,12 +56,15 @@ def test_thesis_asks_appendix_b_and_every_question_is_optional(thesis: StudyDefi
 
 
 def test_thesis_consent_speaks_of_what_people_must_know(thesis: StudyDefinition) -> None:
-    text = " ".join(p.text for p in thesis.consent.paragraphs)
+    words = consent_words(thesis, catalogue("en"))
+    text = " ".join((words.motion_warning, *(t for _, t in words.paragraphs), *words.withdrawal))
     needed = ("voluntary", "dizzy", "ten minutes", "store your answers", "withdraw", "erased")
+    needed += ("Copies made for safety", "archives that others have taken away")
     assert [word for word in needed if word not in text] == []
     assert "eight short clips" in text
     assert len(thesis.every_clip) == 8
-    assert any("18" in statement for statement in thesis.consent.statements)
+    assert words.statements[0] == "I am at least 18 years old."
+    assert "we ask you separately" in words.health
 
 
 def test_lod_starts_refraction_at_medium_and_asks_question_1_neutrally() -> None:
