@@ -45,7 +45,7 @@ export async function showPage(answer, start) {
   document.getElementById("texts").replaceWith(page.getElementById("texts"));
   const { lang, dir } = page.documentElement;
   Object.assign(document.documentElement, { lang, dir });
-  for (const name of ["session", "csrf"]) {
+  for (const name of ["session", "csrf", "outbox", "release_s"]) {
     if (page.body.dataset[name] === undefined) delete document.body.dataset[name];
     else document.body.dataset[name] = page.body.dataset[name];
   }

@@ -30,6 +30,8 @@ COMMANDS: Final = (
     "lod-policy",
     "iris",
     "serve",
+    "links",
+    "erase",
     "simulate",
     "export",
     "analyse",

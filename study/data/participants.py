@@ -113,6 +113,13 @@ def by_name(db: Database, public_id: str) -> Participant | None:
         return None if row is None else record_of(row)
 
 
+def by_code(db: Database, code: str) -> Participant | None:
+    """Return who has a completion code of their own, or None; one that many share names nobody."""
+    with db.reading() as session:
+        row = session.scalar(select(ParticipantRow).where(ParticipantRow.completion_code == code))
+        return None if row is None else record_of(row)
+
+
 def seen(
     db: Database, participant: Participant, *, device: Mapping[str, Any] | None = None
 ) -> Participant:
