@@ -14,7 +14,7 @@ export function startAbout(main, { outbox, start }) {
   };
   const questions = new Questionnaire(form, { save });
   draft.follow(form);
-  for (const name of draft.restore(form)) save(name, form.elements.namedItem(name).value);
+  for (const name of draft.restore(form)) save(name, questions.value(name));
   questions.applyRules();
   form.addEventListener("submit", async (event) => {
     event.preventDefault();

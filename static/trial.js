@@ -32,7 +32,7 @@ export function startTrial(main, { outbox, clips, start }) {
     onBroken: (code) => record("problem", { code: `CLIP-${code}` }, `${position}/problem`),
   });
   if (watching.isWatched) questions.unlock();
-  for (const name of draft.restore(form)) save(name, form.elements.namedItem(name).value);
+  for (const name of draft.restore(form)) save(name, questions.value(name));
   questions.applyRules();
   for (const button of main.querySelectorAll("[data-to-questions]")) {
     button.addEventListener("click", toQuestions);
