@@ -7,7 +7,7 @@ import { submitPatiently } from "./navigate.js";
 import { screenFacts } from "./screen.js";
 import { text } from "./texts.js";
 
-const STARTS_PX = [200, 520]; // CSS pixels: once from too small, once from too large
+const STARTS_PX = [200, 460]; // CSS pixels: once from too small, once from too large
 const GUESS_MM_PER_PX = 0.25;
 const PERSON_SHARE = 0.074; // how much the blind spot's place differs between people
 
@@ -60,6 +60,7 @@ export function startCalibration(main, { start }) {
       total: STARTS_PX.length,
     });
     find("[data-card-again]").hidden = done === 0;
+    find("[data-card-lead]").hidden = done > 0;
     slider.value = STARTS_PX[done];
     drawCard();
   }

@@ -43,7 +43,7 @@ export function startEyesight(main, { start }) {
   function show(name) {
     stage = name;
     for (const part of main.querySelectorAll("[data-stage]")) part.hidden = part.dataset.stage !== name;
-    find(`[data-stage="${name}"] h2`)?.focus({ preventScroll: true });
+    find(`[data-stage="${name}"] h1`)?.focus({ preventScroll: true });
     scrollTo(0, 0);
   }
 
