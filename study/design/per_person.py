@@ -91,7 +91,7 @@ def _window(ring: Sequence[Sequence[Clip]], number: int, share: int, *, place: i
     # start elsewhere too, by a shift that keeps them apart from the sides, which alternate.
     start = number + share * place
     shift = place if share % 2 == 0 else place // 2
-    lap = number // size
+    lap = (number // size) * gcd(irises, share)
     return [ring[(start + step) % size][(step + shift + lap) % irises] for step in range(share)]
 
 
