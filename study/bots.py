@@ -20,6 +20,7 @@ from analysis import Answer, Observer, Stimulus, draw_observer
 from renderer.manifest import read_manifest
 from study.answering import about_answers, attention_answer, stimulus, trial_answers
 from study.browser import BotError, Browser
+from study.checking import calibration_report, device_report, eyesight_report
 from study.design.definition import StudyDefinition
 from study.design.questions import Value
 from study.site.media import clip_url
@@ -75,6 +76,7 @@ def take_part(
     browser.post("/consent", {"agree": ticks, "health": "yes"})
     if browser.page.path == "/about-you":
         browser.post("/about-you", _filled(about_answers(definition, observer, rng)))
+    _check(browser, definition, rng)
     browser.post("/instructions", {})
     _prepare(browser, definition)
     while browser.page.path.startswith(("/trial/", "/pause")):
@@ -85,6 +87,28 @@ def take_part(
     if not browser.page.completion_code:
         raise BotError(f"{browser.page.path}: a simulated participant got no completion code")
     return browser.page.completion_code
+
+
+def _check(browser: Browser, definition: StudyDefinition, rng: np.random.Generator) -> None:
+    """Pass the checks before the clips; the plates are left out, for no bot sees them."""
+    for path, report in (
+        ("/device-check", lambda: device_report(definition, _squares(browser))),
+        ("/calibration", lambda: calibration_report(definition, rng)),
+        ("/eyesight", lambda: eyesight_report(definition, None)),
+    ):
+        if browser.page.path != path:
+            continue
+        if path == "/eyesight" and "rings" not in browser.page.data:
+            browser.post("/eyesight/consent", {"agree": "yes"})
+        browser.post(path, {"report": json.dumps(report())})
+        if browser.page.path == path:
+            raise BotError(f"{path}: the site did not take what a simulated participant reported")
+
+
+def _squares(browser: Browser) -> tuple[int, int]:
+    """Count the squares of the page's two strips."""
+    dark, light = browser.page.data["squares"].split()
+    return int(dark), int(light)
 
 
 def _prepare(browser: Browser, definition: StudyDefinition) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from analysis.observers import Answer, Observer, draw_observer
 from study.answering import about_answers, attention_answer, stimulus, trial_answers
+from study.checking import pass_checks
 from study.data import answers, arms, pauses, studies, trials, views
 from study.data import progress as steps
 from study.data.database import Database
@@ -52,6 +53,7 @@ def _take_part(db: Database, study: Study, rng: np.random.Generator) -> None:
     steps.give_consent(db, person, key="consent", payload={"health": True})
     if definition.about:
         steps.store_about(db, person, about_answers(definition, observer, rng), key="about")
+    pass_checks(db, person, definition, rng)
     steps.finish_instructions(db, person, key="instructions")
     leased = arms.assign(db, person, available=all_arms(definition))
     if leased is None:

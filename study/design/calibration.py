@@ -71,16 +71,6 @@ class Calibrated:
     repetitions: int = 0
     outliers: int = 0
 
-    def facts(self) -> dict[str, Any]:
-        """Return the columns of the participant's table."""
-        scale, distance = self.mm_per_px, self.distance_mm
-        return {
-            "mm_per_px": scale and round(scale.value, 5),
-            "mm_per_px_se": scale and round(scale.se, 5),
-            "view_dist_cm": distance and round(distance.value / 10, 2),
-            "view_dist_cm_se": distance and round(distance.se / 10, 2),
-        }
-
 
 def calibrated(report: CalibrationReport) -> Calibrated:
     """Work out what a report says; raises CalibrationError for measures that cannot be."""
@@ -95,6 +85,21 @@ def calibrated(report: CalibrationReport) -> Calibrated:
         raise CalibrationError("distance", str(error)) from None
     _check("distance", distance.value, PLAUSIBLE_DISTANCE_MM)
     return Calibrated(mm_per_px, distance, len(counts), counts.count(False))
+
+
+def calibration_facts(report: CalibrationReport, found: Calibrated) -> dict[str, Any]:
+    """Return the columns of the participant's table."""
+    scale, distance = found.mm_per_px, found.distance_mm
+    skipped = [reason for reason in (report.scale_skipped, report.distance_skipped) if reason]
+    return {
+        "scale_method": report.scale_method,
+        "mm_per_px": scale and round(scale.value, 5),
+        "mm_per_px_se": scale and round(scale.se, 5),
+        "distance_method": report.distance_method,
+        "view_dist_cm": distance and round(distance.value / 10, 2),
+        "view_dist_cm_se": distance and round(distance.se / 10, 2),
+        "calibration_skipped": " ".join(dict.fromkeys(skipped)) or None,
+    }
 
 
 def _scale(report: CalibrationReport) -> Measured | None:

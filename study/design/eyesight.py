@@ -7,7 +7,7 @@ calibrated. People agree to it separately, for these are data about health.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -71,20 +71,24 @@ def smallest_gap_px(rings: Sequence[Ring]) -> int | None:
     return min(seen, default=None)
 
 
-def facts(
-    report: EyesightReport,
-    plates: Sequence[Plate],
-    *,
-    mm_per_px: float | None,
-    distance_mm: float | None,
+def eyesight_facts(
+    report: EyesightReport, plates: Sequence[Plate], *, calibration: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return the columns of the participant's table; angles only where the screen is measured."""
+    """Return the columns of the participant's table.
+
+    ``calibration`` holds the facts of that check, or nothing: then there are no angles.
+    """
     gap_px = smallest_gap_px(report.rings)
-    found: dict[str, Any] = {"smallest_gap_px": gap_px}
-    if mm_per_px is not None and distance_mm is not None and report.rings:
+    found: dict[str, Any] = {
+        "eyesight_test": "taken",
+        "glasses": report.glasses,
+        "smallest_gap_px": gap_px,
+    }
+    mm_per_px, distance_cm = calibration.get("mm_per_px"), calibration.get("view_dist_cm")
+    if mm_per_px is not None and distance_cm is not None and report.rings:
 
         def arcmin(size_px: float) -> float:
-            return round(arc_minutes(size_px, mm_per_px=mm_per_px, distance_mm=distance_mm), 2)
+            return round(arc_minutes(size_px, mm_per_px=mm_per_px, distance_mm=10 * distance_cm), 2)
 
         found["smallest_gap_arcmin"] = None if gap_px is None else arcmin(gap_px)
         found["gap_limit_arcmin"] = arcmin(LEAST_GAP_PX)

@@ -39,7 +39,14 @@ class Person(Visit):
     async def walk(self) -> Acknowledged:
         """Take part; returns what was acknowledged. Raises StuckError."""
         await self.open("/consent")
-        steps = {"/consent": self._agree, "/about-you": self._tell, "/preparing": self._prepare}
+        steps = {
+            "/consent": self._agree,
+            "/about-you": self._tell,
+            "/device-check": self._show_screen,
+            "/calibration": self._measure,
+            "/eyesight": self._see,
+            "/preparing": self._prepare,
+        }
         while self.path != "/thanks":
             before = self.path
             if before.startswith("/trial/"):
@@ -59,6 +66,21 @@ class Person(Visit):
     async def _tell(self) -> None:
         fields = {"key": self.key(), **_answers(self.definition.about, self.rng)}
         await self.post("/about-you", fields)
+
+    async def _show_screen(self) -> None:
+        dark, light = map(int, self.data("squares").split())
+        await self._report(device_report(self.definition, (dark, light)))
+
+    async def _measure(self) -> None:
+        await self._report(calibration_report(self.definition, self.rng))
+
+    async def _see(self) -> None:
+        if 'action="/eyesight/consent"' in self.page:
+            await self.post("/eyesight/consent", {"agree": "yes"})
+        await self._report(eyesight_report(self.definition, None))
+
+    async def _report(self, report: Mapping[str, Any]) -> None:
+        await self.post(self.path, {"key": self.key(), "report": json.dumps(report)})
 
     async def _read(self) -> None:
         await self.post(self.path, {"key": self.key()})

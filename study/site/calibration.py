@@ -12,11 +12,11 @@ from pydantic import ValidationError
 from study.data import before
 from study.design import viewing
 from study.design.calibration import (
-    Calibrated,
     Calibration,
     CalibrationError,
     CalibrationReport,
     calibrated,
+    calibration_facts,
 )
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import first
@@ -72,16 +72,6 @@ def store(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
         STEP,
         key=first(fields, "key") or STEP,
         report=report.model_dump(mode="json"),
-        facts=_facts(report, found),
+        facts=calibration_facts(report, found),
     )
     return to_current(here, visitor)
-
-
-def _facts(report: CalibrationReport, found: Calibrated) -> dict[str, object]:
-    skipped = [reason for reason in (report.scale_skipped, report.distance_skipped) if reason]
-    return {
-        **found.facts(),
-        "scale_method": report.scale_method,
-        "distance_method": report.distance_method,
-        "calibration_skipped": " ".join(dict.fromkeys(skipped)) or None,
-    }

@@ -16,7 +16,8 @@ from starlette.exceptions import HTTPException
 from study.data import before, completion
 from study.data.before import DEVICE_FAILED
 from study.design import patches
-from study.design.device_check import DeviceCheck, DeviceReport, Finding, findings, remote_hints
+from study.design.device_check import DeviceCheck, DeviceReport, findings
+from study.design.device_facts import device_facts
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import first
 from study.site.frame import shared
@@ -62,6 +63,7 @@ def _page(
         named=named,
         check=check,
         sizes=sorted(definition.sizes, key=lambda size: size.width * size.height),
+        squares=[len(patches.strip_levels(seed, strip)) for strip in ("dark", "light")],
         strips={strip: patches.strip_levels(seed, strip) for strip in ("dark", "light")},
         self_test=f"/self-test/{patches.self_test_name()}" if _has_self_test(here) else "",
         patches=[list(patch) for patch in patches.PATCHES],
@@ -118,28 +120,9 @@ def store(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
         payload = {"report": kept, "stopping": list(stopping)}
         before.note(here.db, visitor.participant, DEVICE_FAILED, key=key, payload=payload)
         return _page(here, visitor, report=report, stopping=stopping)
-    facts = _facts(report, found, seed=visitor.participant.seed)
+    facts = device_facts(report, found, seed=visitor.participant.seed)
     before.record(here.db, visitor.participant, STEP, key=key, report=kept, facts=facts)
     return to_current(here, visitor)
-
-
-def _facts(report: DeviceReport, found: tuple[Finding, ...], *, seed: int) -> dict[str, object]:
-    """Return the columns of the participant's table."""
-    return {
-        "refresh_hz": report.refresh_hz,
-        "refresh_jitter_ms": report.refresh_jitter_ms,
-        "zoom": report.zoom,
-        "colour_error": report.colour_error,
-        "codec": report.codec or None,
-        "is_decoding_smooth": report.is_smooth,
-        "mbit_s": report.mbit_s,
-        "dark_steps": patches.steps_seen(report.dark_counted, seed, "dark"),
-        "light_steps": patches.steps_seen(report.light_counted, seed, "light"),
-        "night_light": report.night_light,
-        "hdr": report.hdr,
-        "remote_hints": len(remote_hints(report)),
-        "device_faults": " ".join(f.item for f in found if f.verdict == "bad") or None,
-    }
 
 
 @router.post("/device-check/leave", response_class=HTMLResponse)

@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException
 
 from study.data import before
 from study.data.before import EYESIGHT_AGREED
-from study.design.eyesight import LEAST_GAP_PX, NEEDED, Eyesight, EyesightReport, facts
+from study.design.eyesight import LEAST_GAP_PX, NEEDED, Eyesight, EyesightReport, eyesight_facts
 from study.design.plates import Plate, plate_svg, plates
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import first
@@ -110,19 +110,13 @@ def store(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
     except ValidationError:
         return _page(here, visitor, fault="eyesight.unreadable")
     calibration = before.facts_of(here.db, visitor.participant, "calibration")
-    distance_cm = calibration.get("view_dist_cm")
-    found = facts(
-        report,
-        _plates(visitor),
-        mm_per_px=calibration.get("mm_per_px"),
-        distance_mm=None if distance_cm is None else 10 * distance_cm,
-    )
+    found = eyesight_facts(report, _plates(visitor), calibration=calibration)
     before.record(
         here.db,
         visitor.participant,
         STEP,
         key=first(fields, "key") or STEP,
         report=report.model_dump(mode="json"),
-        facts={"eyesight_test": "taken", **found},
+        facts=found,
     )
     return to_current(here, visitor)
