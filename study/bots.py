@@ -91,16 +91,15 @@ def take_part(
 
 def _check(browser: Browser, definition: StudyDefinition, rng: np.random.Generator) -> None:
     """Pass the checks before the clips; the plates are left out, for no bot sees them."""
-    for path, report in (
-        ("/device-check", lambda: device_report(definition, _squares(browser))),
-        ("/calibration", lambda: calibration_report(definition, rng)),
-        ("/eyesight", lambda: eyesight_report(definition, None)),
-    ):
-        if browser.page.path != path:
-            continue
+    reports: dict[str, Callable[[], dict[str, Any]]] = {
+        "/device-check": lambda: device_report(definition, _squares(browser)),
+        "/calibration": lambda: calibration_report(definition, rng),
+        "/eyesight": lambda: eyesight_report(definition, None),
+    }
+    while (path := browser.page.path) in reports:
         if path == "/eyesight" and "rings" not in browser.page.data:
             browser.post("/eyesight/consent", {"agree": "yes"})
-        browser.post(path, {"report": json.dumps(report())})
+        browser.post(path, {"report": json.dumps(reports[path]())})
         if browser.page.path == path:
             raise BotError(f"{path}: the site did not take what a simulated participant reported")
 

@@ -8,11 +8,13 @@ from __future__ import annotations
 import html
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 
+from study.checking import calibration_report, device_report, eyesight_report
 from study.design.definition import StudyDefinition, read_definition
 from study.design.questions import (
     ChoiceQuestion,
