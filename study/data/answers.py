@@ -15,7 +15,7 @@ from study.data.database import Database
 from study.data.participants import Participant, locked
 from study.data.refusals import NotWatchedError
 from study.data.studies import by_id
-from study.data.trials import AMENDED, ANSWERED, Trial, trials_of
+from study.data.trials import AMENDED, ANSWERED, Trial, state_of
 from study.data.views import check_reached, start
 from study.design.definition import StudyDefinition
 from study.design.questions import Value, each_asked, read_answers
@@ -53,8 +53,7 @@ def store(
     with db.writing() as session:
         row = locked(session, participant)
         trial = events.trial_row(session, row.id, position)
-        mine = trials_of(session, row.id)
-        state = next(t for t in mine if t.position == position)
+        state = state_of(session, trial)
         if events.is_known(session, row, key):
             return Stored(new=False, is_amendment=False, trial_complete=state.is_complete)
         check_reached(session, trial)

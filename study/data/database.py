@@ -47,6 +47,7 @@ class Database:
         self.engine = engine
         self.now = clock
         self.cache: dict[int, Any] = {}
+        self.recent: dict[int, tuple[float, Any]] = {}
         self._reading_engine = reading_engine(engine)
         self._group = GroupCommit(engine) if engine.dialect.name == "sqlite" else None
         self._session: ContextVar[tuple[Session, bool] | None] = ContextVar("session", default=None)

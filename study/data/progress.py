@@ -74,7 +74,7 @@ def current_step(db: Database, participant: Participant) -> Step:
         early = early_step(row, definition, done_checks(session, row.id, definition))
         if early is not None:
             return Step(early)
-        mine = trials.trials_of(session, row.id)
+        mine = trials.trials_of(session, row.id, open_only=True)
         pause = pauses.due_pause(session, row.id, definition, mine)
     open_trial = next((trial for trial in mine if not trial.is_complete), None)
     if open_trial is None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+import time
 from dataclasses import dataclass, replace
 
 from sqlalchemy import func, select
@@ -12,6 +14,8 @@ from study.data.database import Database
 from study.data.refusals import StudyConflictError
 from study.data.schema import ParticipantRow, StudyRow
 from study.design.definition import StudyDefinition, parse_definition
+
+FRESH_S: Final = 1.0
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,7 @@ def register(db: Database, definition: StudyDefinition) -> Study:
             for name, value in _columns(definition).items():
                 setattr(row, name, value)
         session.flush()
+        db.recent.pop(row.id, None)
         return study_of(db, row)
 
 
@@ -100,12 +105,21 @@ def all_studies(db: Database) -> list[Study]:
 
 
 def by_id(db: Database, study_id: int) -> Study:
-    """Return one study; raises LookupError when there is none."""
+    """Return one study, as of at most FRESH_S ago; raises LookupError when there is none.
+
+    Every page asks for it several times, and it stays the same from its first participant on.
+    """
+    read_at, known = db.recent.get(study_id, (-math.inf, None))
+    if known is not None and time.monotonic() - read_at < FRESH_S:
+        found: Study = known
+        return found
     with db.reading() as session:
         row = session.get(StudyRow, study_id)
         if row is None:
             raise LookupError(f"no study {study_id} in this database")
-        return study_of(db, row)
+        found = study_of(db, row)
+    db.recent[study_id] = (time.monotonic(), found)
+    return found
 
 
 def study_of(db: Database, row: StudyRow) -> Study:

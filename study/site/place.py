@@ -72,7 +72,7 @@ def _environment(version: str) -> jinja2.Environment:
     return pages
 
 
-def place_of(request: Request) -> Place:
+async def place_of(request: Request) -> Place:
     """Return the site that a request came to."""
     found: Place = request.app.state.place
     return found

@@ -51,7 +51,7 @@ def _trial_page(
     if record is None:
         return _missing(request, here, visitor, found)
     definition = visitor.study.definition
-    every = trials.all_trials(here.db, visitor.participant)
+    every = trials.all_trials(here.db, visitor.participant, open_only=True)
     is_last = found.position == every[-1].position
     frame = shared(visitor.study, visitor, "trial")
     text = frame["text"]
