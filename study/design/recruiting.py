@@ -60,12 +60,11 @@ class Recruiting(Part):
 def readable(value: str) -> str:
     """Return what a parameter brings, or nothing for what no recruiter sends.
 
-    Anybody can write an address: too long, control characters and halves of characters are out.
+    Anybody can write an address: too long, control characters and broken characters are out.
     """
-    value = value.strip()
-    if not 0 < len(value) <= MAX_VALUE_CHARS or not value.isprintable():
-        return ""
-    return value
+    value = value.strip(" ")
+    is_sound = 0 < len(value) <= MAX_VALUE_CHARS and value.isprintable() and "\ufffd" not in value
+    return value if is_sound else ""
 
 
 def check_recruiting(data: Data) -> Iterator[Fault]:

@@ -26,8 +26,14 @@ STEP_WORDS: Final = {
     "preparing": "waiting for clips",
     "practice": "practice clip",
     "trial": "rating clips",
-    "thanks": "completed",
+    "thanks": "at the end",
+    "screened_out": "screened out",
     "withdrawn": "withdrawn",
+}
+OUTCOME_WORDS: Final = {
+    "completed": "completed",
+    "screened_out": "screened out",
+    "failed_checks": "failed checks",
 }
 
 
@@ -42,6 +48,7 @@ def frame(study: Study, researcher: SignedIn, section: str, heading: str) -> dic
         "ago": ago,
         "duration": duration,
         "step_words": STEP_WORDS,
+        "outcome_words": OUTCOME_WORDS,
     }
 
 
