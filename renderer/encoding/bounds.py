@@ -7,7 +7,7 @@ from typing import Final
 
 from renderer.clip import ClipSpec
 from renderer.encoding.comparison import Fidelity
-from renderer.encoding.encode import BUFFER_S, QUALITY
+from renderer.encoding.encode import BOX_STEPS, BUFFER_S, QUALITY
 
 MAX_BYTES: Final = 8_000_000  # of a clip of 5 s with 1920 x 1080 pixels or fewer
 REFERENCE_S: Final = 5.0
@@ -18,8 +18,8 @@ FILLED: Final = 0.9  # of x264's rate buffer before the first frame
 STEPS_PER_OCTAVE: Final = 5.0  # what doubles or halves a clip's file
 FINEST_BY: Final = 6.0  # steps; a picture of 720 lines then takes what one of 1080 does
 
-# How much finer a clip can be than at macroscopic for as many bytes: measured, docs/encoding.md.
-FINER: Final = {"macroscopic": 0.0, "near": 3.5, "medium": 3.5, "far": 3.5}
+# How much finer the eyes can be than at macroscopic for as many bytes: they are smaller.
+FINER: Final = {"macroscopic": 0.0, "near": 4.5, "medium": 6.0, "far": 6.0}
 
 
 def max_bytes(spec: ClipSpec) -> int:
@@ -42,10 +42,14 @@ def max_rate(spec: ClipSpec) -> float:
 
 
 def quality(spec: ClipSpec) -> float:
-    """Return the constant rate factor with which a clip nearly fills its bytes."""
+    """Return the constant rate factor outside of the eyes: finer for a smaller picture."""
     octaves = math.log2(REFERENCE_PX / (spec.width * spec.height))
-    smaller = min(FINEST_BY, max(0.0, STEPS_PER_OCTAVE * octaves))
-    return QUALITY - FINER[spec.distance] - smaller
+    return QUALITY - min(FINEST_BY, max(0.0, STEPS_PER_OCTAVE * octaves))
+
+
+def box_steps(spec: ClipSpec) -> float:
+    """Return how many steps finer the eyes are, so that a clip nearly fills its bytes."""
+    return BOX_STEPS + FINER[spec.distance]
 
 
 def missed_bounds(file_bytes: int, fidelity: Fidelity, *, limit: int) -> list[str]:

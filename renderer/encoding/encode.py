@@ -22,8 +22,8 @@ from renderer.encoding.ffmpeg import EncodingError, ffmpeg_command
 
 Pixels = npt.NDArray[np.uint8]
 
-QUALITY: Final = 27.5  # x264's constant rate factor outside of the boxes; inside BOX_STEPS finer
-BOX_STEPS: Final = 16.3  # finer quantiser steps inside the boxes; 6 steps halve the error
+QUALITY: Final = 27.5  # x264's constant rate factor outside of the boxes
+BOX_STEPS: Final = 17.0  # finer quantiser steps inside the boxes; 6 steps halve the error
 PRESET: Final = "medium"  # smaller by a sixth than "veryfast" at the same FLIP
 THREADS: Final = 2  # fixed: x264's bytes depend on the number of threads
 BUFFER_S: Final = 0.5  # the time over which ``max_rate`` holds
@@ -87,12 +87,14 @@ def open_encoder(
     size: tuple[int, int],
     boxes: Sequence[Box] = (),
     quality: float = QUALITY,
+    box_steps: float = BOX_STEPS,
     max_rate: float | None = None,
     master: Path | None = None,
 ) -> Iterator[Encoder]:
     """Encode what is written into ``path``, and into ``master`` without loss.
 
-    ``boxes`` get finer quantisers. ``max_rate`` in bits per second coarsens what exceeds it over
+    ``quality`` is x264's constant rate factor; ``boxes`` get quantisers ``box_steps`` finer than
+    the rest. ``max_rate`` in bits per second coarsens what exceeds it over
     BUFFER_S. FFmpeg works beside the caller; leaving waits until the files are whole. Raises
     EncodingError when FFmpeg stops, on a full disk for instance.
     """
@@ -100,7 +102,8 @@ def open_encoder(
     command = ffmpeg_command(
         *("-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}"),
         *("-r", str(fps), "-i", "-"),
-        *_clip_arguments(path, boxes=boxes, quality=quality, max_rate=max_rate),
+        *("-vf", _filters(boxes, box_steps), "-crf", f"{quality:.2f}", *_bound(max_rate)),
+        *(*_OUTPUT, str(path)),
         *([] if master is None else [*_MASTER, str(master)]),
     )
     with tempfile.TemporaryFile() as said:
@@ -122,13 +125,13 @@ def open_encoder(
             raise EncodingError(f"{path}: FFmpeg stopped: {said.read().decode().strip()}")
 
 
-def _clip_arguments(
-    path: Path, *, boxes: Sequence[Box], quality: float, max_rate: float | None
-) -> list[str]:
-    """Return what FFmpeg is told to make a clip of its input."""
-    offset = -BOX_STEPS / _STEPS
+def _filters(boxes: Sequence[Box], box_steps: float) -> str:
+    offset = -box_steps / _STEPS
     regions = [f"addroi=x={b.x}:y={b.y}:w={b.width}:h={b.height}:qoffset={offset}" for b in boxes]
-    bound = [] if max_rate is None else ["-maxrate", f"{max_rate:.0f}"]
-    bound += [] if max_rate is None else ["-bufsize", f"{max_rate * BUFFER_S:.0f}"]
-    filters = ",".join([AS_STORED, *regions])
-    return ["-vf", filters, "-crf", f"{quality:.2f}", *bound, *_OUTPUT, str(path)]
+    return ",".join([AS_STORED, *regions])
+
+
+def _bound(max_rate: float | None) -> list[str]:
+    if max_rate is None:
+        return []
+    return ["-maxrate", f"{max_rate:.0f}", "-bufsize", f"{max_rate * BUFFER_S:.0f}"]

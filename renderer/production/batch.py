@@ -1,24 +1,23 @@
-"""Clips and their manifest: render what is missing, once, and survive being killed.
+"""Several clips, one after the other: render what is missing, once, and survive being killed.
 
-A clip's file appears under its name only when it is whole, and in the manifest only after that; an
-interrupted batch leaves a hidden part file that the next one removes. While a clip is drawn, the
-one before is compared with its encoding in another process.
+While a clip is drawn, the one before is compared with its encoding in another process.
 """
 
 from __future__ import annotations
 
-import fcntl
-import os
-import socket
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
+from concurrent.futures import BrokenExecutor, Future
 from functools import partial
 from pathlib import Path
+from types import TracebackType
+from typing import Self
 
 from renderer.clip import ClipSpec
-from renderer.manifest import ClipRecord, read_manifest, write_manifest
+from renderer.manifest import ClipRecord
+from renderer.production.drawing import DrawnClip, FrameSource, Progress
 from renderer.production.finishing import Finishing
-from renderer.production.making import DrawnClip, FrameSource, Progress, draw_clip, finish_clip
+from renderer.production.folder import bring_in, draw_part, kept_record, remove_parts
+from renderer.production.making import finish_clip
 
 
 def render_clips(
@@ -37,38 +36,85 @@ def render_clips(
     remove_parts(folder)
     wanted = {spec.clip_id: spec for spec in specs}
     records: dict[str, ClipRecord] = {}
-    waiting: list[Callable[[], ClipRecord]] = []
+    with _Waiting(folder, records) as waiting:
+        for number, (clip_id, spec) in enumerate(wanted.items()):
+            kept = kept_record(spec, folder, with_master=with_master)
+            if kept is not None:
+                records[clip_id] = kept
+                progress(number, 1.0)
+                continue
 
-    def bring_in() -> None:
-        while waiting:
-            record = waiting.pop()()
-            records[record.clip_id] = record
+            def hear(share: float, number: int = number) -> None:
+                waiting.look()
+                progress(number, share)
 
-    with Finishing() as finishing:
-        try:
-            for number, (clip_id, spec) in enumerate(wanted.items()):
-                kept = _kept(spec, folder, with_master=with_master)
-                if kept is None:
-                    drawn = _draw(
-                        spec,
-                        folder,
-                        source=source,
-                        progress=partial(progress, number),
-                        with_master=with_master,
-                        with_flip=with_flip,
-                    )
-                    bring_in()
-                    is_last = number + 1 == len(wanted)
-                    finished = partial(finish_clip, drawn) if is_last else finishing.start(drawn)
-                    waiting.append(partial(_bring_in, drawn, folder, finished))
-                else:
-                    records[clip_id] = kept
-                    progress(number, 1.0)
-        finally:
-            bring_in()  # what is drawn is not lost by what went wrong later
-    if records:
+            drawn = draw_part(
+                spec,
+                folder,
+                source=source,
+                progress=hear,
+                with_master=with_master,
+                with_flip=with_flip,
+            )
+            waiting.take(drawn, is_last=number + 1 == len(wanted))
+    if wanted:
         progress(len(wanted) - 1, 1.0)
     return [records[clip_id] for clip_id in wanted]
+
+
+class _Waiting:
+    """The clip that is drawn and not yet finished, at most one, and where its record goes.
+
+    Leaving the block brings it in: what is drawn is not lost by what went wrong later.
+    """
+
+    def __init__(self, folder: Path, records: dict[str, ClipRecord]) -> None:
+        self._folder = folder
+        self._records = records
+        self._finishing = Finishing()
+        self._last: tuple[DrawnClip, Future[ClipRecord]] | None = None
+
+    def look(self) -> None:
+        """Bring the clip in if it is finished."""
+        if self._last is not None and self._last[1].done():
+            self._bring_in()
+
+    def take(self, drawn: DrawnClip, *, is_last: bool) -> None:
+        """Have a clip finished after the one before: elsewhere, unless nothing else is drawn."""
+        self._bring_in()
+        if is_last:
+            self._keep(drawn, partial(finish_clip, drawn))
+        else:
+            self._last = drawn, self._finishing.start(drawn)
+
+    def _bring_in(self) -> None:
+        if self._last is not None:
+            (drawn, future), self._last = self._last, None
+            self._keep(drawn, partial(_result, future, drawn))
+
+    def _keep(self, drawn: DrawnClip, finished: Callable[[], ClipRecord]) -> None:
+        self._records[drawn.spec.clip_id] = bring_in(drawn, self._folder, finished)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        try:
+            self._bring_in()
+        finally:
+            self._finishing.close()
+
+
+def _result(future: Future[ClipRecord], drawn: DrawnClip) -> ClipRecord:
+    try:
+        return future.result()
+    except BrokenExecutor:
+        return finish_clip(drawn)  # the process was killed: nothing is lost but time
 
 
 def render_clip(
@@ -84,9 +130,9 @@ def render_clip(
 
     ``with_master`` keeps its frames beside it without loss: a clip without them is made again.
     """
-    kept = _kept(spec, folder, with_master=with_master)
+    kept = kept_record(spec, folder, with_master=with_master)
     if kept is None:
-        drawn = _draw(
+        drawn = draw_part(
             spec,
             folder,
             source=source,
@@ -94,90 +140,6 @@ def render_clip(
             with_master=with_master,
             with_flip=with_flip,
         )
-        kept = _bring_in(drawn, folder, partial(finish_clip, drawn))
+        kept = bring_in(drawn, folder, partial(finish_clip, drawn))
     progress(1.0)
     return kept
-
-
-def _kept(spec: ClipSpec, folder: Path, *, with_master: bool) -> ClipRecord | None:
-    record = read_manifest(folder).current(spec.clip_id, folder)
-    return record if record and (record.has_master(folder) or not with_master) else None
-
-
-def _draw(
-    spec: ClipSpec,
-    folder: Path,
-    *,
-    source: FrameSource,
-    progress: Progress,
-    with_master: bool,
-    with_flip: bool,
-) -> DrawnClip:
-    """Draw a clip into a part file, and its master into another."""
-    folder.mkdir(parents=True, exist_ok=True)
-    part = folder / f".{spec.clip_id}.{_host()}.{os.getpid()}.part.mp4"
-    master = part.with_suffix(".master.mkv") if with_master else None
-    try:
-        return draw_clip(
-            spec, part, source=source, progress=progress, master=master, with_flip=with_flip
-        )
-    except BaseException:
-        _remove(part, master)
-        raise
-
-
-def _bring_in(drawn: DrawnClip, folder: Path, finished: Callable[[], ClipRecord]) -> ClipRecord:
-    """Give a clip's files their names and the manifest its record, once it is finished."""
-    try:
-        record = finished()
-        if drawn.master is not None and record.master is not None:
-            drawn.master.replace(folder / record.master["file"])
-        drawn.path.replace(folder / record.file)
-    finally:
-        _remove(drawn.path, drawn.master)
-    keep_record(record, folder)
-    return record
-
-
-def _remove(*paths: Path | None) -> None:
-    for path in paths:
-        if path is not None:
-            path.unlink(missing_ok=True)
-
-
-def keep_record(record: ClipRecord, folder: Path) -> None:
-    """Add a clip's record to the folder's manifest; several processes may do so at once."""
-    with _locked(folder):
-        manifest = read_manifest(folder)
-        manifest.add(record)
-        write_manifest(manifest, folder)
-
-
-def remove_parts(folder: Path) -> None:
-    """Remove what this machine's ended processes left unfinished; those at work keep theirs."""
-    for part in folder.glob(f".*.{_host()}.*.part.*"):
-        if not _is_alive(int(part.name.split(".")[3])):
-            part.unlink(missing_ok=True)
-
-
-def _host() -> str:
-    """Return this machine's name: a folder that several share holds parts of all of them."""
-    return socket.gethostname().replace(".", "-")
-
-
-def _is_alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
-
-
-@contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    """Let one process at a time change the folder's manifest."""
-    with (folder / ".manifest.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        yield

@@ -23,7 +23,7 @@ from typing import Any, Final
 
 from renderer.clip import PATHS, ClipSpec
 from renderer.manifest import ClipRecord, read_manifest, write_atomically
-from renderer.production.batch import keep_record, remove_parts
+from renderer.production.folder import keep_record, remove_parts
 from renderer.production.orders import WANTED, VersionMismatchError, fill_order, hash_name
 from renderer.sources import code_version
 

@@ -10,51 +10,31 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from contextlib import ExitStack
+from concurrent.futures import Future, ProcessPoolExecutor
 from multiprocessing.connection import wait
-from types import TracebackType
-from typing import Self
 
 from renderer.manifest import ClipRecord
-from renderer.production.making import DrawnClip, finish_clip
+from renderer.production.drawing import DrawnClip
+from renderer.production.making import finish_clip
 
 
 class Finishing:
-    """Finishes clips elsewhere; its process starts with the first and ends with the block."""
+    """Finishes clips elsewhere; its process starts with the first clip."""
 
     def __init__(self) -> None:
-        self._stack = ExitStack()
         self._pool: ProcessPoolExecutor | None = None
 
-    def start(self, drawn: DrawnClip) -> Callable[[], ClipRecord]:
-        """Begin with a clip; return what waits for its record."""
+    def start(self, drawn: DrawnClip) -> Future[ClipRecord]:
+        """Begin with a clip; return its record to come."""
         if self._pool is None:
             spawning = multiprocessing.get_context("spawn")
-            self._pool = self._stack.enter_context(
-                ProcessPoolExecutor(1, mp_context=spawning, initializer=_begin)
-            )
-        future = self._pool.submit(finish_clip, drawn)
+            self._pool = ProcessPoolExecutor(1, mp_context=spawning, initializer=_begin)
+        return self._pool.submit(finish_clip, drawn)
 
-        def finished() -> ClipRecord:
-            try:
-                return future.result()
-            except BrokenExecutor:
-                return finish_clip(drawn)  # the process was killed: nothing is lost but time
-
-        return finished
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._stack.close()
+    def close(self) -> None:
+        """End the process, after the clip at hand."""
+        if self._pool is not None:
+            self._pool.shutdown()
 
 
 def _begin() -> None:

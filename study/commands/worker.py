@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Render until stopped by Ctrl-C or SIGTERM."""
-    from renderer.production.batch import remove_parts
+    from renderer.production.folder import remove_parts
     from renderer.studio import Studio
     from study.data.database import open_database
     from study.worker import run_worker, stopping_on_signals

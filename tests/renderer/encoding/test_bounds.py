@@ -8,9 +8,9 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.encoding.bounds import max_bytes, max_rate, missed_bounds, quality
+from renderer.encoding.bounds import box_steps, max_bytes, max_rate, missed_bounds, quality
 from renderer.encoding.comparison import Fidelity
-from renderer.encoding.encode import BUFFER_S, QUALITY
+from renderer.encoding.encode import BOX_STEPS, BUFFER_S, QUALITY
 
 SPEC = ClipSpec(left=Detail.uniform("low"), right=Detail.uniform("ultra"))
 LIMIT = 8_000_000
@@ -64,7 +64,8 @@ def test_the_rate_and_a_full_buffer_stay_below_the_bound(seconds: float) -> None
 
 def test_smaller_eyes_and_pictures_are_encoded_finer() -> None:
     near = replace(SPEC, distance="near")
-    assert quality(SPEC) == QUALITY > quality(near)
+    assert box_steps(SPEC) == BOX_STEPS < box_steps(near)
+    assert quality(SPEC) == quality(near) == QUALITY
     assert quality(SPEC.resized(1280, 720)) == pytest.approx(QUALITY - 5.85, abs=0.01)
     assert quality(SPEC.resized(320, 180)) == QUALITY - 6.0
     assert quality(SPEC.resized(3840, 2160)) == QUALITY

@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -18,8 +19,10 @@ import pytest
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.lod.policy import default_policy
-from renderer.manifest import MANIFEST_NAME, read_manifest
+from renderer.manifest import MANIFEST_NAME, ClipRecord, read_manifest
 from renderer.production.batch import render_clip, render_clips
+from renderer.production.drawing import DrawnClip
+from renderer.production.making import finish_clip
 
 SPEC = ClipSpec(
     left=Detail.uniform("low"), right=Detail.uniform("ultra"), width=96, height=64, duration_s=0.4
@@ -184,3 +187,57 @@ def test_the_manifest_says_which_lod_each_eye_had(tmp_path: Path) -> None:
     assert again.lod_places == record.lod_places
     assert again.clip_spec == spec
     assert render_clip(SPEC, tmp_path, source=Pattern()).lod_places == []
+
+
+@dataclass
+class Here:
+    """Stands in for the other process: finishes at once, or was killed."""
+
+    error: Exception | None = None
+
+    def start(self, drawn: DrawnClip) -> Future[ClipRecord]:
+        future: Future[ClipRecord] = Future()
+        if self.error is None:
+            future.set_result(finish_clip(drawn))
+        else:
+            future.set_exception(self.error)
+        return future
+
+    def close(self) -> None:
+        pass
+
+
+def test_a_clip_comes_in_while_the_next_one_is_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("renderer.production.batch.Finishing", Here)
+    there: list[int] = []
+    render_clips(
+        [SPEC, replace(SPEC, iris_seed=2)],
+        tmp_path,
+        source=Pattern(),
+        progress=lambda number, _share: there.append(number * len(read_manifest(tmp_path).clips)),
+    )
+    drawing_second = there[SPEC.frame_count :]
+    assert drawing_second[:-1] == [1] * SPEC.frame_count
+    assert drawing_second[-1] == 2
+
+
+def test_a_clip_whose_comparison_was_killed_is_compared_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    killed = Here(BrokenExecutor("killed"))
+    monkeypatch.setattr("renderer.production.batch.Finishing", lambda: killed)
+    records = render_clips([SPEC, replace(SPEC, iris_seed=2)], tmp_path, source=Pattern())
+    assert list(read_manifest(tmp_path).clips) == [record.clip_id for record in records]
+
+
+def test_what_is_drawn_is_kept_when_the_next_clip_fails(tmp_path: Path) -> None:
+    def fail(number: int, _share: float) -> None:
+        if number == 1:
+            raise RuntimeError("stopped")
+
+    with pytest.raises(RuntimeError, match="stopped"):
+        render_clips([SPEC, replace(SPEC, iris_seed=2)], tmp_path, source=Pattern(), progress=fail)
+    assert list(read_manifest(tmp_path).clips) == [SPEC.clip_id]
+    assert not list(tmp_path.glob(".*.part.*"))
