@@ -9,18 +9,23 @@ const KEEPALIVE_BYTES = 16000; // browsers allow 64 KiB over all requests that o
 const NEVER = new Set([400, 404, 409, 410, 413, 422]);
 
 /**
- * Post an entry; never rejects.
+ * Post an entry; never rejects. `owner` is the proof that a page gave to its outbox.
  * @returns {Promise<{isDone: boolean, status: number, told: object | null, wait_ms: number}>}
  *   isDone: the site has it, then `told` is its answer; or it will never take it, then `told` is null
  */
-export async function deliver({ url, csrf }, entry) {
+export async function deliver({ url, csrf, owner }, entry) {
   const body = JSON.stringify(entry);
   const controller = new AbortController();
   const timer = setTimeout(() => controller.abort(), TIMEOUT_MS);
   try {
     const answer = await fetch(url, {
       method: "POST",
-      headers: { "Content-Type": "application/json", "X-CSRF-Token": csrf },
+      headers: {
+        "Content-Type": "application/json",
+        "X-CSRF-Token": csrf,
+        // Whose entry it is, even if somebody else has begun in this browser since.
+        ...(owner && { "X-Ocularist-Outbox": owner }),
+      },
       body,
       keepalive: body.length < KEEPALIVE_BYTES,
       signal: controller.signal,

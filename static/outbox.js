@@ -16,7 +16,7 @@ const MOST_NEWS = 300;
 export class Outbox {
   /**
    * @param {string} session  public name of the session; one browser may hold several
-   * @param {{url: string, csrf: string, mayWrite?: () => boolean,
+   * @param {{url: string, csrf: string, owner?: string, mayWrite?: () => boolean,
    *          onChange: (state: {waiting: number, failed: boolean, unkept: boolean}) => void,
    *          onRefused: (entry: object, status: number) => void}} options
    *   mayWrite: whether this tab is the one that sends

@@ -5,10 +5,11 @@ import { startAbout } from "./about.js";
 import { startCalibration } from "./calibration.js";
 import { startDeviceCheck } from "./device_check.js";
 import { startEyesight } from "./eyesight.js";
-import { startNext, startStop } from "./leaving.js";
+import { startNext, startStop, startWithdrawn } from "./leaving.js";
 import { startPause } from "./pause.js";
 import { startPreparing } from "./preparing.js";
-import { currentSession } from "./sessions.js";
+import { watchForSigns } from "./release.js";
+import { currentSession, deliverForOthers } from "./sessions.js";
 import { startTrial } from "./trial.js";
 
 const PAGES = {
@@ -21,8 +22,9 @@ const PAGES = {
   trial: startTrial,
   next: startNext,
   stop: startStop,
+  withdrawn: startWithdrawn,
 };
-const FREE = new Set(["next", "stop"]); // pages that any tab may show
+const FREE = new Set(["next", "stop", "withdrawn"]); // pages that any tab may show
 const clips = new ClipStore();
 let close = () => {};
 let isElsewhere = false;
@@ -35,10 +37,12 @@ function start() {
   close = () => {};
   const main = document.querySelector("main");
   const { page } = main.dataset;
+  watchForSigns();
   const session = currentSession({ onLost: goElsewhere, isElsewhere: () => isElsewhere });
   if (session && PAGES[page] && !FREE.has(page) && !session.tab.claim()) return goElsewhere();
   close = PAGES[page]?.(main, { outbox: session?.outbox ?? null, clips, start }) ?? close;
-  session?.outbox.send();
+  if (session) session.outbox.send();
+  else deliverForOthers(null, document.body.dataset.events);
 }
 
 /** Another tab takes part: this one says so, keeps still, and takes over when asked or when it may. */

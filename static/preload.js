@@ -7,15 +7,16 @@ import { download } from "./download.js";
 
 export const AHEAD = 3; // so many clips are held beside the one that is shown
 const AT_ONCE = 3;
-const TRIES = 4;
-const PAUSES_MS = [500, 1500, 4000];
+const PAUSES_MS = [500, 1500, 4000]; // then it is given up
 
 /** @typedef {{url: string, bytes: number}} Clip */
 /** @typedef {{address: string, sha256: string, codec: string}} Held  address: of the blob */
 
 export class ClipStore {
-  constructor({ stall_ms } = {}) {
+  /** @param {{stall_ms?: number, pauses_ms?: number[]}} times */
+  constructor({ stall_ms, pauses_ms = PAUSES_MS } = {}) {
     this.stall_ms = stall_ms;
+    this.pauses_ms = pauses_ms;
     this.held = new Map(); // url -> {held: Promise<Held>, stop: AbortController}
     this.loaded = new Map(); // url -> bytes so far
     this.queue = [];
@@ -107,9 +108,9 @@ export class ClipStore {
       } catch (error) {
         if (signal.aborted) throw error;
         this.progress(clip.url, 0);
-        if (attempt === TRIES || error.isFinal) throw error;
+        if (attempt > this.pauses_ms.length || error.isFinal) throw error;
         // Not all browsers of a room at the same moment.
-        const pause_ms = PAUSES_MS[attempt - 1] * (0.75 + Math.random() / 2);
+        const pause_ms = this.pauses_ms[attempt - 1] * (0.75 + Math.random() / 2);
         await new Promise((resolve) => setTimeout(resolve, pause_ms));
       }
     }

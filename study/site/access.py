@@ -102,7 +102,7 @@ def as_visitor(request: Request, here: Here, participant: Participant, token: st
         csrf=csrf_token(here.secret, token),
         outbox=sign_outbox(here.secret, participant.public_id),
         study=studies.by_id(here.db, participant.study_id).spoken(participant.language),
-        resume_url=str(request.url_for("resume", token=token)),
+        resume_url=str(request.url_for("resume", token=token)) if token else "",
         is_idle=here.db.now() - participant.last_seen_at > participants.IDLE,
     )
 
@@ -124,7 +124,7 @@ def visitor_or_none(request: Request, here: Here) -> Visitor | None:
 MaybeVisitor = Annotated[Visitor | None, Depends(visitor_or_none)]
 
 
-def a_visitor(request: Request, visitor: MaybeVisitor) -> Visitor:
+async def a_visitor(request: Request, visitor: MaybeVisitor) -> Visitor:
     """Return the participant; others are led to the first page.
 
     So is who comes back after half an hour: the first page asks whether it is still the same

@@ -16,12 +16,13 @@ import numpy as np
 import pytest
 import uvicorn
 from imageio_ffmpeg import write_frames
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 from sqlalchemy import select
 
 from renderer.clip import ClipSpec
 from renderer.manifest import ClipRecord, Manifest, write_manifest
 from renderer.sources import code_version
-from study.data import export, jobs, participants, researchers, studies
+from study.data import events, export, jobs, participants, researchers, studies
 from study.data.database import Database, open_database
 from study.data.schema import ResearcherRow
 from study.design.definition import StudyDefinition, parse_definition, read_definition
@@ -38,9 +39,12 @@ def small_definition(**changes: Any) -> StudyDefinition:
     data = read_definition("thesis").model_dump(mode="json", exclude_unset=True)
     data |= {
         "key": "small",
+        "translations": {},  # tests change words
         "sizes": [f"{WIDTH}x{HEIGHT}"],
         "clips": data["clips"][:2],
         "orbit": {"duration_s": FRAMES / FPS, "fps": FPS, "directions": ["rightward"]},
+        # A loaded machine drops frames: whether a play counts is asked where a test is about it.
+        "certificate": {"retries": 0},
     }
     return parse_definition(data | changes)
 
@@ -80,6 +84,11 @@ class Site:
     db: Database
     study: studies.Study
     settings: Settings
+
+    @property
+    def by_name(self) -> str:
+        """The same site under a host name: to browsers no secure context."""
+        return self.url.replace("127.0.0.1", "study.test")
 
     def guest(self, **headers: str) -> Guest:
         """Return a browser that nobody has used."""
@@ -318,3 +327,109 @@ def guest(site: Site) -> Iterator[Guest]:
     one = site.guest()
     yield one
     one.client.close()
+
+
+WAIT_MS = 30_000  # a loaded machine is no failure
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Browser]:
+    """One browser for all tests of a module."""
+    expect.set_options(timeout=WAIT_MS)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path="/usr/bin/chromium",
+            args=[
+                "--no-sandbox",
+                "--disable-dev-shm-usage",
+                "--host-resolver-rules=MAP study.test 127.0.0.1",
+            ],
+        )
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def context(chromium: Browser) -> Iterator[BrowserContext]:
+    """A browser that nobody has used, on a screen with 1.5 device pixels per CSS pixel."""
+    screen: Any = {"width": 900, "height": 640}
+    one = chromium.new_context(viewport=screen, screen=screen, device_scale_factor=1.5)
+    one.set_default_timeout(WAIT_MS)
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def page(context: BrowserContext, site: Site) -> Iterator[Page]:
+    """A page that notes every request to anywhere else and every error in a script."""
+    one = context.new_page()
+    foreign: list[str] = []
+    errors: list[str] = []
+    own = (f"{site.url}/", f"blob:{site.url}/", f"{site.by_name}/", f"blob:{site.by_name}/")
+    one.on("request", lambda r: None if r.url.startswith(own) else foreign.append(r.url))
+    one.on("pageerror", lambda error: errors.append(str(error)))
+    yield one
+    assert foreign == []
+    assert errors == []
+
+
+@dataclass
+class Visit:
+    """A participant in a real browser."""
+
+    page: Page
+    site: Site
+
+    def to_preparing(self, url: str | None = None) -> None:
+        """Go from the first page to the clips."""
+        self.page.goto(url or self.site.url)
+        self.page.get_by_role("link", name="Begin").click()
+        agree = self.page.get_by_role("button", name="I agree and want to take part")
+        expect(agree).to_be_visible()  # all() does not wait: on the page before there is no box
+        for box in self.page.get_by_role("checkbox").all():
+            box.check()
+        agree.click()
+        self.page.get_by_label("How old are you?").fill("33")
+        self.page.get_by_role("button", name="Continue").click()
+        self.page.get_by_role("button", name="I am ready").click()
+
+    def to_trial(self, url: str | None = None) -> None:
+        """Go from the first page to the practice trial."""
+        self.to_preparing(url)
+        self.page.get_by_role("button", name="Start with the whole screen").click()
+        expect(self.page).to_have_url(f"{url or self.site.url}/trial/1")
+
+    def state(self, name: str) -> None:
+        """Wait until the stage is in a state."""
+        expect(self.page.locator(".stage")).to_have_attribute("data-state", name)
+
+    def play(self) -> None:
+        """Start the clip."""
+        self.page.get_by_role("button", name="Play the clip").click()
+
+    def watch(self) -> None:
+        """Watch the clip to its end."""
+        self.play()
+        self.state("watched")
+
+    def rate(self, left: int, right: int) -> None:
+        """Answer every question but those for text."""
+        self.page.locator(f"input[name=rating_left][value='{left}']").check()
+        self.page.locator(f"input[name=rating_right][value='{right}']").check()
+        self.page.locator("input[name=comparison][value='1']").check()
+        self.page.locator("input[name=noticed][value=no]").check()
+
+    def saved(self, text: str = "Saved") -> None:
+        """Wait until the strip says something about what is saved."""
+        expect(self.page.locator(".saved [role=status]")).to_have_text(text)
+
+    def recorded(self, kind: str) -> list[dict[str, Any]]:
+        """Return what the site has stored of one kind, oldest first."""
+        person = self.site.people()[0]
+        return [dict(e.payload) for e in events.history(self.site.db, person) if e.kind == kind]
+
+
+@pytest.fixture
+def visit(page: Page, site: Site) -> Visit:
+    """Somebody new in a real browser."""
+    return Visit(page, site)

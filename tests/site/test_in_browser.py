@@ -3,104 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+from playwright.sync_api import BrowserContext, Page, expect
 
 from study.data import completion, events, export, trials
 
-WAIT_MS = 30_000  # a loaded machine is no failure
-
-
-@pytest.fixture(scope="module")
-def chromium() -> Iterator[Browser]:
-    """One browser for all tests here; it ends with this module."""
-    expect.set_options(timeout=WAIT_MS)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(
-            executable_path="/usr/bin/chromium",
-            args=["--no-sandbox", "--disable-dev-shm-usage"],
-        )
-        yield browser
-        browser.close()
-
-
-@pytest.fixture
-def context(chromium: Browser) -> Iterator[BrowserContext]:
-    """A browser that nobody has used, on a screen with 1.5 device pixels per CSS pixel."""
-    screen: Any = {"width": 900, "height": 640}
-    one = chromium.new_context(viewport=screen, screen=screen, device_scale_factor=1.5)
-    one.set_default_timeout(WAIT_MS)
-    yield one
-    one.close()
-
-
-@pytest.fixture
-def page(context: BrowserContext, site: Any) -> Iterator[Page]:
-    """A page that notes every request to anywhere else and every error in a script."""
-    one = context.new_page()
-    foreign: list[str] = []
-    errors: list[str] = []
-    one.on("request", lambda r: None if is_own(r.url, site.url) else foreign.append(r.url))
-    one.on("pageerror", lambda error: errors.append(str(error)))
-    yield one
-    assert foreign == []
-    assert errors == []
-
-
-def is_own(address: str, site_url: str) -> bool:
-    return address.startswith((f"{site_url}/", f"blob:{site_url}/"))
-
-
-def walk_to_preparing(page: Page, url: str) -> None:
-    page.goto(url)
-    page.get_by_role("link", name="Begin").click()
-    agree = page.get_by_role("button", name="I agree and want to take part")
-    expect(agree).to_be_visible()  # all() does not wait: on the page before there is no box
-    for box in page.get_by_role("checkbox").all():
-        box.check()
-    agree.click()
-    page.get_by_label("How old are you?").fill("33")
-    page.get_by_role("button", name="Continue").click()
-    page.get_by_role("button", name="I am ready").click()
-
-
-def walk_to_trial(page: Page, url: str) -> None:
-    walk_to_preparing(page, url)
-    page.get_by_role("button", name="Start with the whole screen").click()
-    expect(page).to_have_url(f"{url}/trial/1")
-
-
-def state(page: Page, name: str) -> None:
-    """Wait until the stage is in a state."""
-    expect(page.locator(".stage")).to_have_attribute("data-state", name)
-
-
-def watch(page: Page) -> None:
-    page.get_by_role("button", name="Play the clip").click()
-    state(page, "watched")
-
-
-def rate(page: Page, left: int, right: int) -> None:
-    page.locator(f"input[name=rating_left][value='{left}']").check()
-    page.locator(f"input[name=rating_right][value='{right}']").check()
-    page.locator("input[name=comparison][value='1']").check()
-    page.locator("input[name=noticed][value=no]").check()
-
-
-def saved(page: Page, text: str) -> None:
-    expect(page.locator(".saved [role=status]")).to_have_text(text)
-
 
 def test_a_session_survives_reload_back_double_click_and_a_lost_connection(
-    site: Any, page: Page, context: BrowserContext
+    site: Any, page: Page, visit: Any, context: BrowserContext
 ) -> None:
-    walk_to_trial(page, site.url)
-    state(page, "ready")
+    visit.to_trial()
+    visit.state("ready")
     expect(page.locator("input[name=rating_left]").first).to_be_disabled()
-    watch(page)
+    visit.watch()
     shown = page.locator("video").bounding_box()
     assert shown is not None
     assert shown["width"] * 1.5 == pytest.approx(320, abs=0.05)
@@ -108,11 +25,11 @@ def test_a_session_survives_reload_back_double_click_and_a_lost_connection(
     assert shown["x"] * 1.5 == pytest.approx(round(shown["x"] * 1.5), abs=0.05)
 
     # Answers given, then the page is reloaded: same trial, same answers, still unlocked.
-    rate(page, 2, 4)
-    saved(page, "Saved")
+    visit.rate(2, 4)
+    visit.saved("Saved")
     page.reload()
     expect(page).to_have_url(f"{site.url}/trial/1")
-    state(page, "watched")
+    visit.state("watched")
     expect(page.locator("input[name=rating_left][value='2']")).to_be_checked()
 
     # A double click on the button finishes one trial, not two.
@@ -125,19 +42,19 @@ def test_a_session_survives_reload_back_double_click_and_a_lost_connection(
     expect(page).to_have_url(f"{site.url}/trial/2")
 
     # Without a connection answers wait in the browser, say so, and arrive later.
-    state(page, "ready")
-    watch(page)
+    visit.state("ready")
+    visit.watch()
     context.set_offline(True)
-    rate(page, 1, 5)
-    saved(page, "Not yet saved – kept in this browser, trying again")
+    visit.rate(1, 5)
+    visit.saved("Not yet saved – kept in this browser, trying again")
     page.get_by_role("button", name="Save and go to the next clip").click()
     expect(page).to_have_url(f"{site.url}/trial/2")
     context.set_offline(False)
     expect(page).to_have_url(f"{site.url}/trial/3")
 
-    state(page, "ready")
-    watch(page)
-    rate(page, 3, 3)
+    visit.state("ready")
+    visit.watch()
+    visit.rate(3, 3)
     page.get_by_role("button", name="Finish").click()
     code = completion.code(site.db, site.people()[0]) if at_thanks(page, site) else None
     assert code is not None
@@ -164,13 +81,13 @@ def at_thanks(page: Page, site: Any) -> bool:
     return True
 
 
-def test_every_frame_is_counted_for_every_play(site: Any, page: Page) -> None:
-    walk_to_trial(page, site.url)
-    watch(page)
+def test_every_frame_is_counted_for_every_play(site: Any, page: Page, visit: Any) -> None:
+    visit.to_trial()
+    visit.watch()
     page.get_by_role("button", name="Watch again").first.click()
     page.wait_for_function("document.querySelector('.stage').dataset.state === 'playing'")
-    state(page, "watched")
-    saved(page, "Saved")
+    visit.state("watched")
+    visit.saved("Saved")
     plays = [e.payload for e in events.history(site.db, site.people()[0]) if e.kind == "played"]
     assert len(plays) == 2
     for play in plays:
@@ -183,9 +100,9 @@ def test_every_frame_is_counted_for_every_play(site: Any, page: Page) -> None:
         assert play["shown_scale"] == 1.0
 
 
-def test_a_covered_page_interrupts_the_play(site: Any, page: Page) -> None:
-    walk_to_trial(page, site.url)
-    state(page, "ready")
+def test_a_covered_page_interrupts_the_play(site: Any, page: Page, visit: Any) -> None:
+    visit.to_trial()
+    visit.state("ready")
     # Tabs of a headless browser are never hidden: say it as the browser would.
     page.evaluate(
         """() => new MutationObserver(() => {
@@ -196,31 +113,31 @@ def test_a_covered_page_interrupts_the_play(site: Any, page: Page) -> None:
         }).observe(document.querySelector(".stage"), { attributes: true })"""
     )
     page.get_by_role("button", name="Play the clip").click()
-    state(page, "interrupted")
+    visit.state("interrupted")
     expect(page.locator("input[name=rating_left]").first).to_be_disabled()
-    saved(page, "Saved")
+    visit.saved("Saved")
     [trial] = trials.all_trials(site.db, site.people()[0])[:1]
     assert trial.views == 0
 
 
-def test_a_broken_clip_stops_with_a_code_and_a_next_step(site: Any, page: Page) -> None:
-    walk_to_trial(page, site.url)
+def test_a_broken_clip_stops_with_a_code_and_a_next_step(site: Any, page: Page, visit: Any) -> None:
+    visit.to_trial()
     page.route("**/clips/*.mp4", lambda route: route.fulfill(status=404))
     page.reload()
-    state(page, "broken")
+    visit.state("broken")
     expect(page.locator(".card[data-when=broken] .code")).to_have_text(
         re.compile(r"^P-[0-9A-Z]{8}-1-HTTP-404$")
     )
-    saved(page, "Saved")
+    visit.saved("Saved")
     page.unroute("**/clips/*.mp4")
     page.locator(".card[data-when=broken]").get_by_role("button", name="Try again").click()
-    state(page, "ready")
+    visit.state("ready")
     problems = [e.payload for e in events.history(site.db, site.people()[0]) if e.kind == "problem"]
     assert problems == [{"code": "CLIP-HTTP-404"}]
 
 
-def test_a_cut_off_clip_is_not_shown(site: Any, page: Page) -> None:
-    walk_to_preparing(page, site.url)
+def test_a_cut_off_clip_is_not_shown(page: Page, visit: Any) -> None:
+    visit.to_preparing()
     page.get_by_role("button", name="Start with the whole screen").wait_for()
     page.route("**/clips/*.mp4", lambda route: route.fulfill(status=416))
     page.reload()
@@ -232,18 +149,22 @@ def test_a_cut_off_clip_is_not_shown(site: Any, page: Page) -> None:
 
 
 @pytest.mark.parametrize("are_clips_ready", [False])
-def test_the_waiting_page_goes_on_by_itself(site: Any, page: Page, put_clips: Any) -> None:
-    walk_to_preparing(page, site.url)
+def test_the_waiting_page_goes_on_by_itself(
+    site: Any, page: Page, visit: Any, put_clips: Any
+) -> None:
+    visit.to_preparing()
     expect(page.get_by_text("The clips are still being made.")).to_be_visible()
     put_clips(site)
     expect(page.get_by_role("button", name="Start with the whole screen")).to_be_visible()
 
 
-def test_questions_can_be_answered_with_the_keyboard_alone(site: Any, page: Page) -> None:
-    walk_to_trial(page, site.url)
-    state(page, "ready")
+def test_questions_can_be_answered_with_the_keyboard_alone(
+    site: Any, page: Page, visit: Any
+) -> None:
+    visit.to_trial()
+    visit.state("ready")
     page.get_by_role("button", name="Play the clip").press("Enter")
-    state(page, "watched")
+    visit.state("watched")
     expect(page.get_by_role("button", name="Answer the questions")).to_be_focused()
     page.keyboard.press("Enter")
     page.keyboard.press("Tab")
@@ -251,7 +172,7 @@ def test_questions_can_be_answered_with_the_keyboard_alone(site: Any, page: Page
     expect(page.locator("input[name=comparison][value='1']")).to_be_checked()
     page.keyboard.press("ArrowDown")
     expect(page.locator("input[name=comparison][value='-1']")).to_be_checked()
-    saved(page, "Saved")
+    visit.saved("Saved")
     page.get_by_role("button", name="Save and go to the next clip").press("Enter")
     note = page.locator("[data-open-note]")
     expect(note).to_be_focused()
@@ -261,13 +182,13 @@ def test_questions_can_be_answered_with_the_keyboard_alone(site: Any, page: Page
 
 
 def test_a_shared_computer_waits_for_the_last_answers(
-    site: Any, page: Page, context: BrowserContext
+    site: Any, page: Page, visit: Any, context: BrowserContext
 ) -> None:
-    walk_to_trial(page, site.url)
-    watch(page)
+    visit.to_trial()
+    visit.watch()
     page.route("**/events", lambda route: route.abort())
     page.locator("input[name=rating_left][value='5']").check()
-    saved(page, "Not yet saved – kept in this browser, trying again")
+    visit.saved("Not yet saved – kept in this browser, trying again")
     page.goto(f"{site.url}/next")
     expect(page.get_by_text("are still on their way")).to_be_visible()
     expect(page.get_by_role("button", name="Start for a new person")).to_be_disabled()
@@ -294,12 +215,12 @@ def test_the_dashboard_renews_itself(site: Any, page: Page) -> None:
     expect(page.locator("[data-stamp]")).to_contain_text("As of")
 
 
-def test_ending_waits_for_the_last_answers(site: Any, page: Page) -> None:
-    walk_to_trial(page, site.url)
-    watch(page)
+def test_ending_waits_for_the_last_answers(site: Any, page: Page, visit: Any) -> None:
+    visit.to_trial()
+    visit.watch()
     page.route("**/events", lambda route: route.abort())
     page.locator("input[name=rating_left][value='5']").check()
-    saved(page, "Not yet saved – kept in this browser, trying again")
+    visit.saved("Not yet saved – kept in this browser, trying again")
     page.goto(f"{site.url}/stop")
     page.get_by_role("button", name="End and keep my answers").click()
     page.unroute("**/events")
@@ -309,10 +230,9 @@ def test_ending_waits_for_the_last_answers(site: Any, page: Page) -> None:
     assert found.answers["rating_left"] == 5
 
 
-def test_a_clip_that_no_browser_can_read_is_told(site: Any, page: Page) -> None:
-    for path in site.settings.media_folder.glob("*.mp4"):
-        path.write_bytes(b"\0" * path.stat().st_size)
-    walk_to_trial(page, site.url)
-    state(page, "broken")
+@pytest.mark.parametrize("make_video", [lambda number: bytes(4000 + number)])
+def test_a_clip_that_no_browser_can_read_is_told(page: Page, visit: Any) -> None:
+    visit.to_trial()
+    visit.state("broken")
     expect(page.get_by_text("Your answers so far are safe.")).to_be_visible()
     expect(page.locator(".card[data-when=broken] .code")).to_contain_text("DEMUXER")
