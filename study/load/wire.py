@@ -76,7 +76,7 @@ class Wire:
     def close(self) -> None:
         """Close the connection; the cookies stay."""
         if self._streams is not None:
-            self._streams[1].close()
+            self._streams[1].transport.abort()
             self._streams = None
 
     def _head(self, method: str, path: str, body: bytes, headers: Mapping[str, str]) -> bytes:
