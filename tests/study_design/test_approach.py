@@ -139,7 +139,8 @@ def test_a_policy_is_read_beside_the_study_and_kept_in_it(
     (tmp_path / "mine.json").write_text(json.dumps(policy))
     text = Path(str(parse_definition.__code__.co_filename)).parent / "definitions" / "approach.toml"
     own, _, _ = text.read_text().partition("[lod_policy]")
-    study = own.replace('version = "1"', 'version = "1"\nlod_policy = "mine.json"', 1)
+    (tmp_path / "mine.ar.toml").write_text(text.with_name("approach.ar.toml").read_text())
+    study = own.replace("[contact]", 'lod_policy = "mine.json"\n\n[contact]', 1)
     (tmp_path / "mine.toml").write_text(study)
     definition = read_definition(tmp_path / "mine.toml")
     assert definition.detail("blended") == Detail.uniform("high")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -74,12 +75,29 @@ def test_lod_starts_refraction_at_medium_and_asks_question_1_neutrally() -> None
     comparison = next(q for q in lod.questions if q.id == "comparison")
     assert comparison.kind == "choice"
     assert [option.value for option in comparison.options] == [-1, 0, 1]
-    assert len(lod.trial_clips) == 20
-    assert sum(clip.is_catch for clip in lod.trial_clips) == 4
+    assert len(lod.trial_clips) == 4 * 3 * 2 * 4 + 16
+    assert sum(clip.is_catch for clip in lod.trial_clips) == 16
+    assert {clip.iris for clip in lod.trial_clips} == set(lod.irises)
+
+
+def test_ablation_leaves_each_effect_out_of_ultra_at_each_distance() -> None:
+    ablation = read_definition("ablation")
+    shown = {
+        (clip.distance, effect)
+        for clip in ablation.trial_clips
+        for lod in {clip.left, clip.right} - {"ultra"}
+        for effect, level in ablation.detail(lod).levels().items()
+        if level == "off"
+    }
+    assert shown == set(product(ablation.distances, EFFECTS))
+    for effect in EFFECTS:
+        assert ablation.detail(f"no-{effect}") == Detail.uniform("ultra").with_levels(
+            **{effect: "off"}
+        )
 
 
 def test_built_in_studies_are_sound_and_found_by_name() -> None:
-    assert built_in_names() == ["approach", "lod", "thesis"]
+    assert built_in_names() == ["ablation", "approach", "lod", "thesis"]
     assert [read_definition(name).key for name in built_in_names()] == built_in_names()
 
 
@@ -93,6 +111,18 @@ def test_rendering_order_lets_people_start_after_one_direction_of_one_size(
     assert {(str(w.size), w.orbit_direction) for w in second} == {("1280x720", "leftward")}
     assert {str(w.size) for w in wanted[16:]} == {"1920x1080"}
     assert len({w.spec.clip_id for w in wanted}) == len(wanted) == 32
+
+
+def test_rendering_order_brings_block_after_block_with_directions_in_turn() -> None:
+    lod = read_definition("lod")
+    wanted = lod.wanted_specs()
+    around = {clip.id for clip in (*lod.practice, *lod.gold)}
+    for number, direction in enumerate(("rightward", "leftward", "rightward")):
+        part = wanted[24 * number : 24 * number + 24] if number < 2 else wanted[48:68]
+        assert {w.orbit_direction for w in part} == {direction}
+        assert {w.clip.id for w in part} - around == {clip.id for clip in lod.blocks[number]}
+    names = [(w.clip.id, w.size, w.orbit_direction) for w in wanted]
+    assert len(set(names)) == len(names) == 4 * len(lod.every_clip)
 
 
 def test_a_clip_spec_carries_what_the_file_says(raw: dict[str, Any]) -> None:
@@ -139,6 +169,8 @@ def test_a_definition_cannot_be_changed(raw: dict[str, Any]) -> None:
 def test_a_file_is_read_by_its_path(tmp_path: Path) -> None:
     thesis_file = Path(read_definition.__code__.co_filename).parent / "definitions" / "thesis.toml"
     copy = tmp_path / "mine.toml"
+    words = thesis_file.with_name("thesis.ar.toml").read_text(encoding="utf-8")
+    (tmp_path / "mine.ar.toml").write_text(words, encoding="utf-8")
     copy.write_text(thesis_file.read_text(encoding="utf-8").replace('key = "thesis"', 'key = "m"'))
     assert read_definition(copy).key == "m"
 
@@ -148,7 +180,7 @@ def test_a_missing_file_names_the_built_in_studies() -> None:
         read_definition("thesys")
     assert str(caught.value) == (
         "thesys: cannot be read (No such file or directory); give the path of a TOML file or a "
-        'built-in study: approach, lod, thesis; did you mean "thesis"?'
+        'built-in study: ablation, approach, lod, thesis; did you mean "thesis"?'
     )
 
 

@@ -230,7 +230,11 @@ def test_damage_anywhere_is_told_and_never_a_crash() -> None:
         ),
         (("lods", "low", "base"), {}, "lods.low.base: expected text in quotes; found {}"),
         (("order",), {"min_views": 0}, "order.min_views: input should be greater than or equal to"),
-        (("order",), {"trials": "shuffled"}, "order.trials: input should be 'random' or 'file'"),
+        (
+            ("order",),
+            {"trials": "shuffled"},
+            "order.trials: input should be 'random', 'balanced' or 'file'",
+        ),
     ],
 )
 def test_a_value_of_the_wrong_kind_is_told_in_the_files_words(

@@ -14,7 +14,8 @@ from study.design.visibility import hidden_effects, visible_from
 
 def test_the_thesis_shows_9_of_16_cells_and_one_mirrored_pair() -> None:
     lines = audit.statements(read_definition("thesis"))
-    assert lines[0] == "One visit has 8 clips (1 for practice) and takes about 9 minutes."
+    assert lines[0].startswith("One visit has 8 clips (1 for practice) and takes about ")
+    assert lines[0].endswith(" s).")
     assert "9 of 16 combinations of LoD and distance were shown." in lines
     assert any("exchanged" in line and "4 and 6" in line for line in lines)
     assert any(line.startswith("No clip showed the same LoD in both eyes") for line in lines)
@@ -35,9 +36,32 @@ def test_the_recommended_study_leaves_no_cell_empty() -> None:
     lod = read_definition("lod")
     facts = audit.audit(lod)
     assert facts.empty_cells == ()
-    assert facts.catch_clips == 4
-    assert len(facts.mirrored) == 4
+    assert facts.catch_clips == 16
+    assert len(facts.mirrored) == 12
+    assert facts.lods == ("low", "medium", "high", "ultra")
     assert all(len(groups) == 1 for groups in facts.linked.values())
+
+
+def test_the_plan_says_who_sees_how_much_and_when_it_is_balanced() -> None:
+    visit, share, orders, *rest = audit.statements(read_definition("lod"))
+    assert visit.startswith("One visit has 24 clips (3 for practice, 1 gold) and takes about 14.")
+    assert "calibration 75 s" in visit
+    assert share == (
+        "One person sees 20 of 112 clips. 12 blocks x 2 directions are 24 arms: after so many "
+        "people every clip was shown equally often in each direction."
+    )
+    assert orders == (
+        "Orders are 20 rows of a Williams design: after 20 people the kinds of trial stood at "
+        "every place, and each came right after each other, equally often."
+    )
+    assert "Shown with the eyes exchanged: 12 pairings." in rest
+
+
+def test_clips_that_differ_in_iris_or_side_are_warned_of_together() -> None:
+    found = [line for line in audit.warnings(read_definition("lod")) if "medium-low" in line]
+    assert len(found) == 2
+    start = "clips medium-low-ultra and medium-ultra-low (medium, low | ultra) at 1280x720: "
+    assert found[0].startswith(start)
 
 
 def test_warnings_name_what_is_worth_a_second_look(raw: dict[str, Any]) -> None:
