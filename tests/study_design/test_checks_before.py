@@ -258,7 +258,7 @@ def test_eyesight_has_angles_where_the_screen_was_measured() -> None:
 
 def test_a_study_without_checks_stays_what_it_was(raw: dict[str, Any]) -> None:
     plain = parse_definition(raw)
-    assert plain.device_check is plain.calibration is plain.eyesight is None
+    assert (plain.device_check, plain.calibration, plain.eyesight) == (None, None, None)
     checked = parse_definition({**raw, "device_check": {}, "calibration": {}, "eyesight": {}})
     assert checked.definition_hash != plain.definition_hash
     assert "device_check" in plain.to_json()
