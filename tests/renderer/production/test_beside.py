@@ -26,10 +26,13 @@ def test_whoever_is_too_far_ahead_waits() -> None:
     gate, started = threading.Event(), threading.Event()
     given: list[int] = []
 
+    def open_gate() -> None:
+        gate.wait(30)
+
     def give() -> None:
         with Beside() as beside:
             for number in range(WAITING + 1):
-                beside.do(lambda: None if gate.wait(30) else None)
+                beside.do(open_gate)
                 given.append(number)
                 if len(given) == WAITING:
                     started.set()
@@ -56,9 +59,13 @@ def test_an_error_is_raised_by_a_later_call_or_at_the_end(times: int) -> None:
         failing(times)
 
 
+def wait_a_moment() -> None:
+    threading.Event().wait(0.05)
+
+
 def leaving_early(done: list[int]) -> None:
     with Beside() as beside:
-        beside.do(partial(threading.Event().wait, 0.05))
+        beside.do(wait_a_moment)
         beside.do(partial(done.append, 1))
         raise KeyError
 
