@@ -21,23 +21,28 @@ FRESH_S: Final = 1.0
 
 @dataclass(frozen=True)
 class Study:
-    """One version of a study as the database has it."""
+    """One version of a study as the database has it.
+
+    ``source`` is the definition in its own language where ``definition`` is a translation.
+    """
 
     id: int
     key: str
     version: str
     title: str
     definition: StudyDefinition
+    source: StudyDefinition | None = None
 
     @property
     def languages(self) -> tuple[str, ...]:
         """The languages that the study's words are written in, its own first."""
-        return self.definition.languages
+        return (self.source or self.definition).languages
 
     def spoken(self, language: str) -> Study:
         """Return the study with the words of one of its languages; of its own for any other."""
-        definition = self.definition.in_language(language)
-        return replace(self, title=definition.title, definition=definition)
+        source = self.source or self.definition
+        definition = source.in_language(language)
+        return replace(self, title=definition.title, definition=definition, source=source)
 
 
 def register(db: Database, definition: StudyDefinition) -> Study:

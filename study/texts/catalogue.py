@@ -69,10 +69,16 @@ class Catalogue:
 def catalogue(language: str) -> Catalogue:
     """Return the texts of a language, or those of English where there is no file for it.
 
-    The catalogue's tongue says which language its texts are in.
+    The catalogue's tongue says which language its texts are in. A text that is not translated yet
+    is there in English: a page half in another language is better than none.
     """
     known = language if language in languages() else FALLBACK
-    return Catalogue(tongue(known), dict(_flat(_read(known))))
+    return Catalogue(tongue(known), {**written_in(FALLBACK), **written_in(known)})
+
+
+def written_in(language: str) -> dict[str, Text]:
+    """Return the texts of one language's file, by key."""
+    return dict(_flat(_read(language)))
 
 
 @lru_cache(maxsize=1)

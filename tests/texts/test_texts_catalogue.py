@@ -9,7 +9,7 @@ import pytest
 from markupsafe import Markup
 
 from study.texts import catalogue, first_spoken, languages, tongue, wished_in_header
-from study.texts.catalogue import CATEGORIES, Text
+from study.texts.catalogue import CATEGORIES, Text, written_in
 
 ENGLISH = catalogue("en")
 OTHERS = [language for language in languages() if language != "en"]
@@ -32,7 +32,7 @@ def test_english_is_the_source_and_arabic_is_whole() -> None:
 
 @pytest.mark.parametrize("language", OTHERS)
 def test_every_language_has_every_text_and_no_other(language: str) -> None:
-    texts = catalogue(language).texts
+    texts = written_in(language)
     assert sorted(ENGLISH.texts.keys() - texts.keys()) == []
     assert sorted(texts.keys() - ENGLISH.texts.keys()) == []
 
