@@ -178,6 +178,7 @@ export class BlindSpot {
     this.misses += 1;
     const half = this.find("[data-spot-field]").clientWidth / 2;
     this.reach += half / 4;
-    this.say(text(this.misses < MISSES ? "calibration.spot_missed" : "calibration.spot_far"));
+    const words = this.misses < MISSES ? "spot_missed" : "spot_far";
+    this.say(text(`calibration.${words}`));
   }
 }

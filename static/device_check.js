@@ -109,8 +109,9 @@ const MEASURES = {
     report.dynamic_range = matchMedia("(dynamic-range: high)").matches ? "high" : "standard";
     report.colour_gamut =
       ["rec2020", "p3", "srgb"].find((one) => matchMedia(`(color-gamut: ${one})`).matches) ?? null;
-    const words = text(`device_check.${report.is_phone ? "phone" : "computer"}`);
-    return { verdict: report.is_phone && main.dataset.phones === "no" ? "bad" : "good", words };
+    const kind = report.is_phone ? "phone" : "computer";
+    const isRefused = report.is_phone && main.dataset.phones === "no";
+    return { verdict: isRefused ? "bad" : "good", words: text(`device_check.${kind}`) };
   },
 
   async screen(main, report) {
@@ -172,8 +173,7 @@ const MEASURES = {
       report.refresh_hz < REMOTE_REFRESH_HZ,
       report.refresh_jitter_ms > REMOTE_JITTER_MS,
     ].filter(Boolean).length;
-    const isRemote = hints > 1;
-    const words = text(`device_check.${isRemote ? "remote" : "direct"}`);
-    return { verdict: isRemote ? "bad" : "good", words };
+    const view = hints > 1 ? "remote" : "direct";
+    return { verdict: hints > 1 ? "bad" : "good", words: text(`device_check.${view}`) };
   },
 };
