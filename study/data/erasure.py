@@ -19,6 +19,7 @@ from study.data import progress
 from study.data.database import Database
 from study.data.participants import Participant
 from study.data.schema import (
+    ErasureRow,
     EventRow,
     LinkRow,
     ParticipantRow,
@@ -58,8 +59,12 @@ def withdraw(db: Database, participant: Participant) -> None:
             withdrawn_on=db.now().date(),
             step=step,
         )
+        erasure = ErasureRow(participant_id=row.id)  # lets the database delete events
+        session.add(erasure)
+        session.flush()
         for table in _ABOUT_A_PERSON:
             session.execute(delete(table).where(table.participant_id == row.id))
+        session.delete(erasure)
         mine = LinkRow.participant_id == row.id
         session.execute(update(LinkRow).where(mine).values(participant_id=None))
         session.delete(row)

@@ -231,3 +231,10 @@ class SignInAttemptRow(Base):
     name: Mapped[str] = mapped_column(String(100), index=True)
     address: Mapped[str] = mapped_column(String(100), index=True)
     created_at: Mapped[datetime]
+
+
+class ErasureRow(Base):
+    """Somebody who withdraws at this moment: while it stands, their events may be deleted."""
+
+    __tablename__ = "erasures"
+    participant_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)

@@ -79,7 +79,7 @@ class Visit:
     async def open(self, path: str) -> None:
         """Open a page and follow where it leads."""
         for _ in range(10):
-            answered = await self.sent("page", partial(self.wire.get, path))
+            answered = await self.sent("page", partial(self._get, path))
             if answered.status not in (302, 303):
                 self.path, self.page = path, answered.text
                 if answered.status >= 400:
@@ -133,6 +133,10 @@ class Visit:
                     raise
             await asyncio.sleep(RETRY_S[min(attempt, len(RETRY_S) - 1)])
         raise AssertionError("unreachable")
+
+    def _get(self, path: str) -> Awaitable[Answered]:
+        # Over the wire of the moment: trouble may lay another one.
+        return self.wire.get(path)
 
     async def _once(self, kind: str, send: Send) -> Answered:
         if self.pause_s:
