@@ -160,7 +160,7 @@ def test_a_clip_is_rendered_once_and_shown_to_simulated_people(
     walk = ["simulate", str(tiny_study), "--through-site", "--participants", "2"]
     assert main([*walk, "--data", str(tmp_path / "data")]) == 0
     said = capsys.readouterr().out
-    assert said.startswith("2 simulated participants took thesis, version 1;")
+    assert said.startswith("2 simulated participants took thesis, version 2;")
     assert main(["export", "--data", str(tmp_path / "data"), "--out", str(tmp_path / "out")]) == 0
     rows = (tmp_path / "out" / "ratings.csv").read_text(encoding="utf-8").splitlines()
     assert len(rows) == 1 + 2 * 2  # two people, one clip, two eyes

@@ -21,7 +21,7 @@ def changes() -> dict[str, Any]:
 
 @pytest.fixture
 def definition(definition: StudyDefinition, changes: dict[str, Any]) -> StudyDefinition:
-    data = definition.model_dump(mode="json", exclude_unset=True)
+    data = definition.model_dump(mode="json", exclude_unset=True, exclude={"translations"})
     data["consent"] = data["consent"] | changes
     return parse_definition(data)
 

@@ -29,7 +29,7 @@ def recruiting() -> dict[str, Any]:
 
 @pytest.fixture
 def definition(definition: StudyDefinition, recruiting: dict[str, Any]) -> StudyDefinition:
-    data = definition.model_dump(mode="json", exclude_unset=True)
+    data = definition.model_dump(mode="json", exclude_unset=True, exclude={"translations"})
     return parse_definition(data | {"recruiting": recruiting})
 
 

@@ -180,7 +180,7 @@ def test_the_tables_can_be_taken_away_one_by_one_and_together(site: Any, ada: An
     simulate(site.db, site.study.definition, participants=2, seed=1)
     assert "2 of the participants in these tables are simulated" in ada.get("/researcher/data").text
     answer = ada.client.get("/researcher/data/ratings.csv")
-    assert answer.headers["content-disposition"] == 'attachment; filename="small-1-ratings.csv"'
+    assert answer.headers["content-disposition"] == 'attachment; filename="small-2-ratings.csv"'
     ratings = pd.read_csv(io.StringIO(answer.text))
     assert len(ratings) == 2 * 3 * 2
     assert ratings["simulated"].all()
