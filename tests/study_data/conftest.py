@@ -203,6 +203,12 @@ def enrol_walk(db: Database, study: Study) -> Any:
     return lambda seed, **facts: new_walk(db, study, seed=seed, **facts)
 
 
+@pytest.fixture
+def enrol_into(db: Database) -> Any:
+    """Return a function that enrols somebody into a study of the test's own."""
+    return lambda study, seed=1: new_walk(db, study, seed=seed)
+
+
 def fake_render(spec: Any, folder: Path, progress_: Any) -> ClipRecord:
     """Stand in for the renderer: write a file and its record in the manifest, no picture."""
     folder.mkdir(parents=True, exist_ok=True)

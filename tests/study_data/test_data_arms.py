@@ -8,12 +8,13 @@ from typing import Any
 
 import pytest
 
-from study.data import arms, jobs, participants, progress
+from study.data import arms, jobs, participants, progress, studies, trials
 from study.data.database import Database
 from study.data.readiness import readiness
 from study.data.studies import Study
 from study.design.arms import Arm, all_arms
-from study.design.definition import WantedClip
+from study.design.definition import StudyDefinition, WantedClip, parse_definition
+from study.design.schedule import schedule
 
 SMALL, LARGE = "320x180", "640x360"
 
@@ -175,6 +176,91 @@ def test_signs_of_life_keep_a_lease(
         clock.move(minutes=20)
         walk.participant = participants.seen(db, walk.participant)
     assert sum(arms.counts(db, study).values()) == 1
+
+
+def shared_out(raw: dict[str, Any]) -> StudyDefinition:
+    """Return a study of six pairings of which one person sees four: six blocks, four rows."""
+    factors = {"distances": ["near"], "lods": ["low", "own", "third"], "against": ["ultra"]}
+    raw["lods"]["third"] = {"base": "ultra", "sclera": "low"}
+    raw |= {"key": "shared", "sizes": ["320x180"], "factors": [factors], "clips": [], "catch": []}
+    return parse_definition(raw | {"per_person": {"pairs": 4}, "order": {"trials": "balanced"}})
+
+
+def test_people_get_blocks_and_rows_in_turn(
+    db: Database, raw: dict[str, Any], enrol_into: Any
+) -> None:
+    study = studies.register(db, shared_out(raw))
+    people = []
+    for seed in range(12):
+        walk = enrol_into(study, seed)
+        walk.begin()
+        people.append(walk.participant)
+    assert {Counter(arms.counts(db, study).values())[1], len(people)} == {12}
+    assert Counter(person.block for person in people) == dict.fromkeys(range(1, 7), 2)
+    assert arms.row_counts(db, study) == dict.fromkeys(range(1, 5), 3)
+    for person in people:
+        mine = trials.all_trials(db, person)
+        assert [t.clip for t in mine] == [
+            t.clip.id
+            for t in schedule(
+                study.definition, person.seed, block=person.block, order_row=person.order_row
+            )
+        ]
+        assert trials.clip_ids(db, person) == tuple(t.clip_id for t in mine)
+
+
+def test_a_person_starts_as_soon_as_one_block_is_there(
+    db: Database, raw: dict[str, Any], enrol_into: Any
+) -> None:
+    study = studies.register(db, shared_out(raw))
+    wanted = study.definition.wanted_specs()
+    jobs.enqueue(db, wanted)
+    assert len(wanted) == 2 * 7
+    walk = enrol_into(study)
+    walk.to_preparing()
+    render(db, 4)
+    assert readiness(db, walk.participant, screen=None).clips_left == 1
+    render(db, 1)
+    leased = arms.assign(db, walk.participant)
+    assert leased is not None
+    assert (leased.orbit_direction, leased.block) == ("rightward", 1)
+
+
+def test_a_smaller_screen_keeps_the_row_and_gives_the_arm_back(
+    db: Database, raw: dict[str, Any], enrol_into: Any
+) -> None:
+    definition = shared_out(raw).model_dump(mode="json") | {"sizes": [SMALL, LARGE]}
+    study = studies.register(db, parse_definition(definition))
+    walk = enrol_into(study)
+    walk.to_preparing()
+    open_arms = all_arms(study.definition)
+    first = arms.assign(db, walk.participant, available=open_arms)
+    smaller = arms.assign(db, walk.participant, screen=(400, 400), available=open_arms)
+    assert first is not None
+    assert smaller is not None
+    assert (first.size, smaller.size) == (LARGE, SMALL)
+    assert first.order_row == smaller.order_row
+    assert sum(arms.counts(db, study).values()) == 1
+
+
+def test_who_fails_the_checks_leaves_the_place_to_somebody_else(
+    db: Database, raw: dict[str, Any], enrol_into: Any
+) -> None:
+    expected = [{"question": "comparison", "value": -1}]
+    gold = {"id": "g", "distance": "near", "left": "ultra", "right": "low", "after": 1}
+    rule = {"rule": {"failed_gold": 1}}
+    study = studies.register(
+        db, parse_definition(raw | {"gold": [gold | {"expected": expected}], "completion": rule})
+    )
+    for seed, comparison in ((1, "1"), (2, "-1")):
+        walk = enrol_into(study, seed)
+        walk.begin()
+        while (step := progress.current_step(db, walk.participant)).trial is not None:
+            walk.answer(step.trial.position, comparison=comparison)
+        person = participants.by_name(db, walk.participant.public_id)
+        assert person is not None
+        assert person.outcome == {"1": "failed_checks", "-1": "completed"}[comparison]
+        assert sum(arms.counts(db, study).values()) == seed - 1
 
 
 def test_completed_people_count_for_ever(
