@@ -27,6 +27,7 @@ def keys_in(path: Path) -> set[str]:
         found = {f"scripts.{key}" for key in SCRIPT_KEY.findall(source)}
     else:
         found = set(KEY.findall(source))
+    found = {key for key in found if not key.endswith((".css", ".js", ".html"))}
     return {re.sub(r"\$?\{[^}]+\}", "*", key) for key in found}
 
 
