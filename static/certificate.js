@@ -35,7 +35,7 @@ export class PlayRecord {
     this.unfocused = new Intervals(!document.hasFocus());
     this.windowed = new Intervals(isWindowed());
     this.rates = [video.playbackRate];
-    this.shown = this.shownSize();
+    this.shown = this.seen = this.shownSize();
     this.listen();
     if (this.counted_by === "frames") this.countFrames();
     else video.addEventListener("timeupdate", () => this.begin(performance.now()), this.once());
@@ -58,9 +58,7 @@ export class PlayRecord {
     on(document, "fullscreenchange", () => this.windowed.set(isWindowed(), this.elapsed_ms));
     on(window, "resize", () => {
       this.windowed.set(isWindowed(), this.elapsed_ms);
-      const { width_px, height_px } = this.shownSize();
-      const by_px = Math.abs(width_px - this.shown.width_px) + Math.abs(height_px - this.shown.height_px);
-      if (by_px > 0.5) counts.resizes += 1;
+      this.checkSize();
     });
     on(video, "waiting", () => {
       if (this.first === null) return; // before the first frame nothing stands still
@@ -83,6 +81,7 @@ export class PlayRecord {
       this.countFrames();
       if (frame.mediaTime < this.video.duration / this.options.frames / 2) return;
       this.callbacks += 1;
+      this.checkSize();
       if (this.last) {
         const gap_ms = frame.presentationTime - this.last.presentationTime;
         this.max_gap_ms = Math.max(this.max_gap_ms, gap_ms);
@@ -101,6 +100,14 @@ export class PlayRecord {
     this.options.onFirstFrame(shown_ms);
   }
 
+  /** Count every change of the shown size, whatever made it. */
+  checkSize() {
+    const now = this.shownSize();
+    const by_px = (name) => Math.abs(now[name] - this.seen[name]);
+    if (by_px("width_px") + by_px("height_px") > 0.5) this.counts.resizes += 1;
+    this.seen = now;
+  }
+
   /** The video's size in device pixels. */
   shownSize() {
     const box = this.video.getBoundingClientRect();
@@ -110,6 +117,7 @@ export class PlayRecord {
   /** End the record; `endedBy` is "end" for a play to the end. Call it once. */
   finish(endedBy) {
     this.stop.abort();
+    this.checkSize();
     const { video, first, last } = this;
     const now_ms = this.elapsed_ms;
     const after = this.quality && video.getVideoPlaybackQuality();

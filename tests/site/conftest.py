@@ -149,6 +149,12 @@ def finish_jobs(db: Database) -> None:
 
 
 @pytest.fixture
+def small_study() -> Callable[..., StudyDefinition]:
+    """Return what makes the small study, with changes at the top of its file."""
+    return small_definition
+
+
+@pytest.fixture
 def definition() -> StudyDefinition:
     """The study of the test; a test that needs another one overrides it."""
     return small_definition()
@@ -398,6 +404,16 @@ class Visit:
         self.to_preparing(url)
         self.page.get_by_role("button", name="Start with the whole screen").click()
         expect(self.page).to_have_url(f"{url or self.site.url}/trial/1")
+
+    def straight_to_trial(self) -> None:
+        """Open the practice trial as somebody who came there without a browser."""
+        guest = self.site.guest()
+        guest.walk_to_trial()
+        name = "ocularist_participant"
+        cookie: Any = {"name": name, "value": guest.client.cookies[name], "url": self.site.url}
+        guest.client.close()
+        self.page.context.add_cookies([cookie])
+        self.page.goto(f"{self.site.url}/trial/1")
 
     def state(self, name: str) -> None:
         """Wait until the stage is in a state."""

@@ -81,45 +81,6 @@ def at_thanks(page: Page, site: Any) -> bool:
     return True
 
 
-def test_every_frame_is_counted_for_every_play(site: Any, page: Page, visit: Any) -> None:
-    visit.to_trial()
-    visit.watch()
-    page.get_by_role("button", name="Watch again").first.click()
-    page.wait_for_function("document.querySelector('.stage').dataset.state === 'playing'")
-    visit.state("watched")
-    visit.saved("Saved")
-    plays = [e.payload for e in events.history(site.db, site.people()[0]) if e.kind == "played"]
-    assert len(plays) == 2
-    for play in plays:
-        assert play["expected_frames"] == 15
-        # How many are dropped is the machine's business; that they are counted is ours.
-        assert 0 < play["presented_frames"] <= 16
-        assert 0 <= play["dropped_frames"] <= 16
-        assert play["is_complete"] is True
-        assert play["device_pixel_ratio"] == 1.5
-        assert play["shown_scale"] == 1.0
-
-
-def test_a_covered_page_interrupts_the_play(site: Any, page: Page, visit: Any) -> None:
-    visit.to_trial()
-    visit.state("ready")
-    # Tabs of a headless browser are never hidden: say it as the browser would.
-    page.evaluate(
-        """() => new MutationObserver(() => {
-            if (document.querySelector(".stage").dataset.state !== "playing") return;
-            Object.defineProperty(document, "hidden", { value: true, configurable: true });
-            document.dispatchEvent(new Event("visibilitychange"));
-            delete document.hidden;
-        }).observe(document.querySelector(".stage"), { attributes: true })"""
-    )
-    page.get_by_role("button", name="Play the clip").click()
-    visit.state("interrupted")
-    expect(page.locator("input[name=rating_left]").first).to_be_disabled()
-    visit.saved("Saved")
-    [trial] = trials.all_trials(site.db, site.people()[0])[:1]
-    assert trial.views == 0
-
-
 def test_a_broken_clip_stops_with_a_code_and_a_next_step(site: Any, page: Page, visit: Any) -> None:
     visit.to_trial()
     page.route("**/clips/*.mp4", lambda route: route.fulfill(status=404))
