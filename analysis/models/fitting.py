@@ -8,14 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from analysis.models.counts import Counts
-from analysis.models.grids import first_grid, refined_grid
+from analysis.models.grids import (
+    coarse_grid,
+    first_grid,
+    is_too_large,
+    refined_grid,
+    thinned,
+)
 from analysis.models.likelihood import log_likelihood
 from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE, OrdinalModel
 from analysis.models.priors import PRIORS, Priors
@@ -23,8 +29,9 @@ from analysis.models.quadrature import Grid
 
 Floats = NDArray[np.float64]
 _START_SD: Final[Mapping[str, float]] = {LENIENCY: 0.5, INCONSISTENCY: 0.2, STYLE: 0.2}
+_SILENT: Final = 0.01  # curvature of a direction with a standard error of 10: no answer at all
+_FLAT: Final = "the data leave some parameters without an upper or lower bound"
 _STEP: Final = 1e-5  # of the gradient's differences: its own error is about 1e-10
-_MOST_NODES, _MOST_CELLS = 1281, 60_000  # in one direction, and in all
 
 
 @dataclass(frozen=True)
@@ -79,75 +86,97 @@ def fit(
     category that nobody used when there are no priors.
     """
     _check(model, counts, priors)
-    finer = grid is None
-    grid = grid or first_grid(model, counts)
+    problem = _Problem(model, counts, priors, weights)
     parameters = _start(model, counts) if start is None else start
+    if grid is not None:
+        return problem.finish(grid, _climb(problem.target(grid), parameters), [])
+    curvature = None
+    if len(model.effects) > 1 and start is None:
+        target = problem.target(thinned(model, parameters, counts, coarse_grid(model)))
+        parameters = _climb(target, parameters)
+        curvature = _hessian(target, parameters)
+    whole = first_grid(model, counts)
     warnings: list[str] = []
     while True:
-        target = _objective(model, counts, grid, priors, weights)
-        parameters = _climb(target, parameters)
-        value = log_likelihood(model, parameters, counts, grid, weights=weights)[0]
-        better = (
-            refined_grid(model, parameters, counts, grid, weights=weights, value=value)
-            if finer
-            else None
-        )
+        grid = thinned(model, parameters, counts, whole)
+        parameters = _climb(problem.target(grid), parameters, curvature=curvature)
+        better = refined_grid(model, parameters, counts, whole, weights=weights)
         if better is None:
             break
-        if max(better.counts) > _MOST_NODES or better.log_weights.size > _MOST_CELLS:
+        if is_too_large(better):
             warnings.append(
-                f"the integration grid stops at {max(grid.counts)} nodes in a direction; "
+                f"the integration grid stops at {max(whole.counts)} nodes in a direction; "
                 "people gave so many answers that it should be finer"
             )
             break
-        grid = better
-    covariance, flat = _covariance(target, parameters)
-    if flat:
-        warnings.append("the data leave some parameters without an upper or lower bound")
-    return OrdinalFit(model, parameters, covariance, value, grid, counts, priors, tuple(warnings))
+        whole = better
+    return problem.finish(grid, parameters, warnings)
 
 
 Objective = Callable[[Floats], tuple[float, Floats]]
 
 
-def _objective(
-    model: OrdinalModel,
-    counts: Counts,
-    grid: Grid,
-    priors: Priors | None,
-    weights: Floats | None,
-) -> Objective:
-    """Return the negative log posterior (or likelihood) and its gradient as a function."""
-    means, sds = np.array([priors[kind] for kind in model.kinds]).T if priors else np.zeros((2, 0))
+@dataclass(frozen=True)
+class _Problem:
+    """What is fitted to what."""
 
-    def target(parameters: Floats) -> tuple[float, Floats]:
-        value, gradient = log_likelihood(model, parameters, counts, grid, weights=weights)
-        if not priors:
-            return -value, -gradient
-        away = (parameters - means) / sds
-        return 0.5 * float(away @ away) - value, away / sds - gradient
+    model: OrdinalModel
+    counts: Counts
+    priors: Priors | None
+    weights: Floats | None
 
-    return target
+    def value(self, parameters: Floats, grid: Grid) -> tuple[float, Floats]:
+        return log_likelihood(self.model, parameters, self.counts, grid, weights=self.weights)
+
+    def target(self, grid: Grid) -> Objective:
+        """Return the negative log posterior (or likelihood) with its gradient as a function."""
+        priors, kinds = self.priors, self.model.kinds
+        means, sds = np.array([priors[kind] for kind in kinds]).T if priors else np.zeros((2, 0))
+
+        def target(parameters: Floats) -> tuple[float, Floats]:
+            value, gradient = self.value(parameters, grid)
+            if not priors:
+                return -value, -gradient
+            away = (parameters - means) / sds
+            return 0.5 * float(away @ away) - value, away / sds - gradient
+
+        return target
+
+    def finish(self, grid: Grid, parameters: Floats, warnings: list[str]) -> OrdinalFit:
+        """Take the Newton step that BFGS's own stop leaves out, and invert the Hessian."""
+        target = self.target(grid)
+        covariance, is_flat = _inverse(_hessian(target, parameters))
+        value, gradient = target(parameters)
+        nearer = parameters - np.clip(covariance @ gradient, -0.5, 0.5)
+        if is_flat:
+            warnings = [*warnings, _FLAT]
+        elif target(nearer)[0] <= value:
+            parameters = nearer
+        return OrdinalFit(
+            self.model,
+            parameters,
+            covariance,
+            self.value(parameters, grid)[0],
+            grid,
+            self.counts,
+            self.priors,
+            tuple(warnings),
+        )
 
 
-def _climb(target: Objective, start: Floats) -> Floats:
-    """Minimise by BFGS, then by a Newton step, which BFGS's own stop leaves out."""
+def _climb(target: Objective, start: Floats, *, curvature: Floats | None = None) -> Floats:
+    """Minimise by BFGS; ``curvature`` is the Hessian near the optimum, where it is known."""
     scale = max(1.0, float(np.abs(target(start)[1]).max()))
 
     def scaled(parameters: Floats) -> tuple[float, Floats]:
         value, gradient = target(np.clip(parameters, -30.0, 30.0))
         return value / scale, gradient / scale
 
-    found = minimize(scaled, start, jac=True, method="BFGS", options={"gtol": 1e-6, "maxiter": 500})
-    best = np.asarray(found.x, dtype=float)
-    hessian = _hessian(target, best)
-    value, gradient = target(best)
-    try:
-        step = np.linalg.solve(hessian, gradient)
-    except np.linalg.LinAlgError:
-        return best
-    trial = best - np.clip(step, -0.5, 0.5)
-    return trial if target(trial)[0] <= value else best
+    options: Any = {"gtol": 1e-6, "maxiter": 500}
+    if curvature is not None:
+        options["hess_inv0"] = _inverse(curvature)[0] * scale
+    found = minimize(scaled, start, jac=True, method="BFGS", options=options)
+    return np.asarray(found.x, dtype=float)
 
 
 def _hessian(target: Objective, parameters: Floats) -> Floats:
@@ -160,12 +189,11 @@ def _hessian(target: Objective, parameters: Floats) -> Floats:
     return result
 
 
-def _covariance(target: Objective, parameters: Floats) -> tuple[Floats, bool]:
-    """Invert the Hessian; directions without curvature get a huge variance and are told."""
-    values, vectors = np.linalg.eigh(_hessian(target, parameters))
-    floor = max(1e-6, 1e-10 * float(values.max()))
-    flat = bool((values < floor).any())
-    return (vectors / np.maximum(values, floor)) @ vectors.T, flat
+def _inverse(hessian: Floats) -> tuple[Floats, bool]:
+    """Invert a Hessian; say whether the data are silent in some direction."""
+    values, vectors = np.linalg.eigh(hessian)
+    inverse = (vectors / np.maximum(values, 1e-6)) @ vectors.T
+    return (inverse + inverse.T) / 2, bool((values < _SILENT).any())
 
 
 def _check(model: OrdinalModel, counts: Counts, priors: Priors | None) -> None:

@@ -48,9 +48,7 @@ def cells(model: OrdinalModel, parameters: Floats, grid: Grid) -> Cells:
     shrink = np.exp(-noise)
     eta = model.locations(parameters)
     bounds = (cut[None] - eta[:, None, None] - spread[0] * nodes[0]) * shrink
-    ends = np.full((bounds.shape[0], 1, bounds.shape[2]), np.inf)
-    edges = np.concatenate([-ends, bounds, ends], axis=1)
-    log_p = np.maximum(model.link.log_interval(edges[:, :-1], edges[:, 1:]), _FLOOR)
+    log_p = np.maximum(model.link.log_intervals(bounds), _FLOOR)
     return Cells(
         log_p, bounds, np.broadcast_to(shrink, (*eta.shape, 1, len(stretch))), stretch, nodes
     )
@@ -87,6 +85,16 @@ def posteriors(table: Floats, flat_log_p: Floats, grid: Grid) -> tuple[Floats, F
     share = np.exp(joint - top)
     norm = share.sum(axis=1, keepdims=True)
     return share / norm, (top + np.log(norm))[:, 0]
+
+
+def visited(model: OrdinalModel, parameters: Floats, counts: Counts, grid: Grid) -> Floats:
+    """Return for each node (Q,) the greatest probability that any person has of being there."""
+    flat = cells(model, parameters, grid).log_p.reshape(-1, grid.log_weights.size)
+    own = counts.table.reshape(counts.people, -1)
+    most = np.zeros(grid.log_weights.size)
+    for rows in _blocks(counts.people, flat.shape[1]):
+        np.maximum(most, posteriors(own[rows], flat, grid)[0].max(axis=0), out=most)
+    return most
 
 
 def _blocks(people: int, nodes: int) -> Iterator[slice]:

@@ -29,23 +29,34 @@ class Link:
     log_pdf: Callable[[Floats], Floats]
     quantile: Callable[[Floats], Floats]
 
-    def log_interval(self, low: Floats, high: Floats) -> Floats:
-        """Return log(F(high) - F(low)) for low < high; either may be infinite.
+    def log_intervals(self, bounds: Floats) -> Floats:
+        """Return log P of the K intervals that K - 1 rising bounds cut the line into.
 
-        Both ends are mirrored into the lower tail, where F keeps its relative accuracy.
+        ``bounds`` (n, K - 1, q) gives (n, K, q). Where an interval lies above zero it is mirrored
+        into the lower tail: there F keeps its relative accuracy.
         """
+        below, above = self.cdf(bounds), self.cdf(-bounds)
+        end = np.zeros_like(bounds[:, :1])
+        lower = np.diff(below, axis=1, prepend=end, append=end + 1.0)
+        upper = -np.diff(above, axis=1, prepend=end + 1.0, append=end)
+        is_upper = np.concatenate([bounds[:, :1] * 0 > 0, bounds > 0], axis=1)
+        share = np.where(is_upper, upper, lower)
+        far = np.nonzero(share < _TINY)
+        share[far] = 1.0
+        logs = np.log(share)
+        if len(far[0]):
+            logs[far] = self._far(bounds, far)
+        return np.asarray(logs)
+
+    def _far(self, bounds: Floats, far: tuple[NDArray[np.intp], ...]) -> Floats:
+        """Return log P of intervals too unlikely to be subtracted."""
+        ends = np.full_like(bounds[:, :1], np.inf)
+        edges = np.concatenate([-ends, bounds, ends], axis=1)
+        low, high = edges[far], edges[far[0], far[1] + 1, far[2]]
         is_upper = low > 0
-        a = np.where(is_upper, -high, low)
-        b = np.where(is_upper, -low, high)
-        share = self.cdf(b) - self.cdf(a)
-        with np.errstate(divide="ignore"):
-            logs = np.log(share)
-        far = share < _TINY
-        if far.any():
-            log_b, log_a = self.log_cdf(b[far]), self.log_cdf(a[far])
-            with np.errstate(divide="ignore"):
-                logs[far] = log_b + np.log(-np.expm1(np.minimum(log_a - log_b, -1e-16)))
-        return logs
+        a, b = np.where(is_upper, -high, low), np.where(is_upper, -low, high)
+        log_b, log_a = self.log_cdf(b), self.log_cdf(a)
+        return np.asarray(log_b + np.log(-np.expm1(np.minimum(log_a - log_b, -1e-16))))
 
 
 def _normal_log_pdf(x: Floats) -> Floats:

@@ -24,10 +24,17 @@ def test_cdf_pdf_quantile_and_sd_are_the_laws(name: str) -> None:
     assert link.sd == pytest.approx(law.std())
 
 
+def intervals(link: Link, *bounds: float) -> np.ndarray:
+    return link.log_intervals(np.array(bounds)[None, :, None])[0, :, 0]
+
+
 @pytest.mark.parametrize("link", [PROBIT, LOGIT])
-def test_an_interval_is_as_likely_as_its_mirror_image(link: Link) -> None:
-    low, high = np.array([-3.0, 0.2, 7.0, -1.0]), np.array([-2.0, 0.3, 7.5, np.inf])
-    assert link.log_interval(low, high) == pytest.approx(link.log_interval(-high, -low))
+def test_intervals_are_differences_and_as_likely_as_their_mirror_images(link: Link) -> None:
+    bounds = (-3.0, -1.0, 0.2, 4.0)
+    shares = np.diff([0.0, *LAWS[link.name].cdf(bounds), 1.0])
+    assert np.exp(intervals(link, *bounds)) == pytest.approx(shares, rel=1e-12)
+    mirrored = intervals(link, *(-b for b in reversed(bounds)))
+    assert intervals(link, *bounds) == pytest.approx(mirrored[::-1], rel=1e-13)
 
 
 def test_far_intervals_keep_their_logarithm() -> None:
@@ -35,13 +42,8 @@ def test_far_intervals_keep_their_logarithm() -> None:
     x = 40.0
     tail = -x * x / 2 - 0.5 * math.log(2 * math.pi) - math.log(x)
     tail += math.log(1 - x**-2 + 3 * x**-4 - 15 * x**-6)
-    for low, high in ((40.0, 41.0), (-41.0, -40.0)):
-        found = PROBIT.log_interval(np.array([low]), np.array([high]))
-        assert found[0] == pytest.approx(tail, abs=1e-9)
-    logit = LOGIT.log_interval(np.array([800.0]), np.array([801.0]))
-    assert logit[0] == pytest.approx(-800 + math.log(1 - math.exp(-1)), abs=1e-9)
-
-
-def test_all_of_the_line_is_certain() -> None:
-    for link in (PROBIT, LOGIT):
-        assert link.log_interval(np.array([-np.inf]), np.array([np.inf])) == pytest.approx(0.0)
+    assert intervals(PROBIT, 40.0, 41.0)[1] == pytest.approx(tail, abs=1e-9)
+    assert intervals(PROBIT, -41.0, -40.0)[1] == pytest.approx(tail, abs=1e-9)
+    assert intervals(PROBIT, 40.0)[1] == pytest.approx(tail, abs=1e-9)
+    far = intervals(LOGIT, 800.0, 801.0)[1]
+    assert far == pytest.approx(-800 + math.log(1 - math.exp(-1)), abs=1e-9)

@@ -1,0 +1,1 @@
+"""What the models say of a study's tables: realism, preference, noticing, with uncertainty."""
