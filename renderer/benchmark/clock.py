@@ -15,9 +15,9 @@ from typing import Final, Protocol
 
 import moderngl
 
+from renderer.context import is_software
 from renderer.frame import Frame
 
-SOFTWARE: Final = ("llvmpipe", "softpipe", "swr", "swiftshader", "software", "basic render")
 WALL, QUERY = "wall time", "timer queries"
 WARM_UP: Final = 1  # the first frame builds the eyes and compiles their shaders
 # Over the orbit, from the side to the front and back: costs follow what is seen.
@@ -43,8 +43,7 @@ Timer = Callable[[Timed, float, float], float]
 
 def clock_of(gl_renderer: str) -> str:
     """Return which clock tells the truth on a GL renderer: WALL or QUERY."""
-    name = gl_renderer.lower()
-    return WALL if any(word in name for word in SOFTWARE) else QUERY
+    return WALL if is_software(gl_renderer) else QUERY
 
 
 def timer_of(gl: moderngl.Context, clock: str) -> Timer:

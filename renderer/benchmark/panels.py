@@ -98,7 +98,7 @@ def draw_cubes(axes: Axes, rows: list[Cost]) -> None:
         if own:
             _label(axes, x[-1], y[-1], kind, colour)
     axes.set_xscale("log", base=2)
-    sizes = sorted({row.cube_px or 0 for row in rows})
+    sizes = sorted({row.cube_px or 0 for row in rows if row.effect})
     axes.set_xticks(sizes, [str(size) for size in sizes])
     axes.minorticks_off()
     axes.set_xlabel("pixels of a face", fontsize=SMALL)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from renderer.benchmark.clock import QUERY, WALL
 from renderer.benchmark.crowd import crowd_steps
 from renderer.benchmark.cubes import cube_steps
 from renderer.benchmark.effects import effect_steps
@@ -24,16 +26,21 @@ SIZE: Final = (1920, 1080)
 QUICK_SIZE: Final = (640, 360)
 
 
+# Seconds a unit of weight: whatever the size, and for each million pixels. Two cores with llvmpipe.
+WEIGHT_S: Final = {WALL: (0.10, 0.11), QUERY: (0.10, 0.002)}
+CORES: Final = 2
+
+
 @dataclass(frozen=True)
 class Progress:
     """Before a step: its title, the share of the work that is done, and the seconds left.
 
-    ``left_s`` is None before there is anything to reckon from.
+    ``left_s`` is guessed from the size and the kind of GL before there is anything to reckon from.
     """
 
     title: str
     share: float
-    left_s: float | None
+    left_s: float
 
 
 def steps_of(parts: Sequence[str], *, is_quick: bool) -> list[Step]:
@@ -73,7 +80,7 @@ def run_bench(
         for number, step in enumerate(steps):
             share = total_weight(steps[:number]) / total_weight(steps)
             spent = time.monotonic() - started
-            left_s = spent / share * (1 - share) if share else None
+            left_s = spent / share * (1 - share) if share else guess_s(stand, steps)
             progress(Progress(f"{step.part}: {step.title}", share, left_s))
             step.measure(stand, bench)
         seconds = time.monotonic() - started
@@ -86,3 +93,14 @@ def run_bench(
         )
     finally:
         studio.close()
+
+
+def guess_s(stand: Stand, steps: Sequence[Step]) -> float:
+    """Return about how many seconds some steps are going to take, from what they took elsewhere.
+
+    Setting up is the same for every size; frames follow the pixels, and on software GL the cores.
+    """
+    set_up_s, frame_s = WEIGHT_S[stand.clock]
+    megapixels = stand.size[0] * stand.size[1] / 1e6
+    cores = CORES / (os.cpu_count() or 1) if stand.clock == WALL else 1.0
+    return total_weight(steps) * (set_up_s + frame_s * megapixels * cores)

@@ -44,7 +44,7 @@ class Cost:
     fetches: int | None = None  # of thickness, per pixel of iris
     rms_percent: float | None = None  # of the integrator, against 4000 small steps
     bias_percent: float | None = None
-    cube: str | None = None  # static or dynamic
+    cube: str | None = None  # static or dynamic; of whole frames a clip's cube_size
     cube_px: int | None = None
     crowd: int | None = None
 

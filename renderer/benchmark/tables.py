@@ -89,14 +89,20 @@ def _samples(bench: Bench) -> list[Table]:
 
 
 def _cubes(bench: Bench) -> list[Table]:
-    cell = {(row.cube_px, row.cube): row for row in bench.of_part("cubes")}
+    found = bench.of_part("cubes")
+    cell = {(row.cube_px, row.cube): row for row in found if row.effect}
     sizes = dict.fromkeys(size for size, _ in cell)
     rows = [
         (f"{size} px", *(_ms(cell.get((size, kind))) for kind in ("static", "dynamic")))
         for size in sizes
     ]
     note = "ms with the reflection minus none, ± MAD; one ultra eye."
-    return [Table("Cube maps by size of a face", note, ("", "static", "dynamic"), rows)]
+    clips = [(f"{row.cube}, {row.cube_px} px", _ms(row), _fps(row)) for row in found if row.lod]
+    whole = "Whole frames of two ultra eyes: cubes of Table 5.1's size, and of what the size shows."
+    return [
+        Table("Cube maps by size of a face", note, ("", "static", "dynamic"), rows),
+        Table("Cube maps in clips", whole, ("cube_size", "ms", "frames/s"), clips),
+    ]
 
 
 def _crowd(bench: Bench) -> list[Table]:
@@ -106,7 +112,7 @@ def _crowd(bench: Bench) -> list[Table]:
             f"{row.crowd} people",
             row.distance,
             f"{row.eyes} {row.lod}",
-            f"{row.ms_median:.1f} ± {row.ms_mad:.1f}",
+            _ms(row),
             _fps(row),
         )
         for row in found

@@ -75,6 +75,10 @@ def known() -> Bench:
         for size, kind, ms in ((128, "static", 5.0), (128, "dynamic", 9.0),
                                (2048, "static", 8.0), (2048, "dynamic", 90.0))
     ]  # fmt: skip
+    cubes += [
+        cost("cubes", lod="ultra", eyes=2, cube=choice, cube_px=size, ms_median=ms)
+        for choice, size, ms in (("table", 2048, 400.0), ("auto", 256, 250.0))
+    ]
     crowd = [
         cost("crowd", lod="ultra", crowd=people, distance="far", eyes=2, ms_median=80.0 + people)
         for people in (0, 30)

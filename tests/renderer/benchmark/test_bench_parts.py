@@ -10,12 +10,16 @@ import pytest
 from renderer.benchmark import crowd, cubes, lods
 from renderer.benchmark.clock import QUERY, timer_of
 from renderer.benchmark.effects import is_none, levels_of
-from renderer.benchmark.plan import Progress, run_bench, steps_of
+from renderer.benchmark.plan import Progress, guess_s, run_bench, steps_of
 from renderer.benchmark.result import PARTS, About, Bench
 from renderer.benchmark.stand import ONE, Stand, processor
 from renderer.benchmark.startup import caches_in, in_fresh_process
 from renderer.benchmark.work import count_pixels
+from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
+from renderer.eye.cube_size import cube_px
+
+AUTO = ClipSpec(left=Detail(), right=Detail(), width=96, height=64, cube_size="auto")
 
 
 def empty(stand: Stand) -> Bench:
@@ -99,6 +103,30 @@ def test_a_cube_of_another_size_is_mirrored_and_the_scene_keeps_its_own(
     assert small.render(0.0).visible_px[0] > 0
 
 
+def test_clips_are_timed_with_the_cubes_that_their_setting_gives(
+    stand: Stand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cubes, "BASE", Detail(reflection="ultra"))
+    bench = empty(stand)
+    cubes.cube_steps(1, is_quick=True)[-1].measure(stand, bench)
+    sizes = {row.cube: row.cube_px for row in bench.rows}
+    assert sizes == {"table": 2048, "auto": cube_px(Detail(reflection="ultra"), AUTO)}
+    assert all(row.eyes == 2 and row.ms_median > 0 for row in bench.rows)
+
+
+def test_the_time_is_guessed_from_pixels_and_cores(
+    stand: Stand, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    steps = steps_of(PARTS, is_quick=False)
+    small, large = (
+        guess_s(Stand(stand.studio, size, rounds=1), steps) for size in ((640, 360), (1920, 1080))
+    )
+    assert 60 < small < large < 30 * 60
+    monkeypatch.setattr("os.cpu_count", lambda: 8)
+    assert guess_s(Stand(stand.studio, (1920, 1080), rounds=1), steps) < large
+
+
 def test_more_samples_fetch_more_where_the_iris_is(stand: Stand) -> None:
     layers = Detail(subsurface="ultra")
     values = stand.frames(stand.spec(layers)).eye_models[0].values
@@ -144,8 +172,8 @@ def test_progress_is_told_before_each_step(monkeypatch: pytest.MonkeyPatch) -> N
         f"memory: {lod}" for lod in ("low", "medium", "high", "ultra")
     ]
     assert [progress.share for progress in told] == [0.0, 0.25, 0.5, 0.75]
-    assert told[0].left_s is None
-    assert told[1].left_s is not None
+    assert told[0].left_s > 0.0  # a guess, before anything is measured
+    assert told[1].left_s < 60.0
     assert [item.megabytes for item in bench.memory] == [128.0] * 4
     assert bench.about.clock == "wall time"
     assert Studio.is_closed

@@ -26,6 +26,7 @@ def test_every_part_has_its_table(known: Bench) -> None:
         "Effects, from ultra",
         "Subsurface: samples against our integrator",
         "Cube maps by size of a face",
+        "Cube maps in clips",
         "Crowd",
         "Work of one eye",
         "Work of each effect",
@@ -51,6 +52,14 @@ def test_samples_stand_beside_ours_with_their_error(known: Bench) -> None:
     rows = cells(known, "Subsurface: samples against our integrator")
     assert rows["left sum, 10 samples"] == ("11", "346", "20.0 ± 0.5", "25.00", "+20.00")
     assert rows["ours at ultra"] == ("1", "-", "40.0 ± 0.5", "0.60", "-0.02")
+
+
+def test_clips_cubes_are_whole_frames_beside_the_sizes(known: Bench) -> None:
+    assert cells(known, "Cube maps in clips") == {
+        "table, 2048 px": ("400.0 ± 0.5", "2.5"),
+        "auto, 256 px": ("250.0 ± 0.5", "4"),
+    }
+    assert list(cells(known, "Cube maps by size of a face")) == ["128 px", "2048 px"]
 
 
 def test_the_start_is_summed(known: Bench) -> None:
