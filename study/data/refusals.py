@@ -23,6 +23,14 @@ class UnusablePayloadError(RefusedError):
     """A key or payload that cannot be stored: too long, or not plain JSON."""
 
 
+class TooManyError(RefusedError):
+    """Too often in a short time; it may be tried again after ``wait_s`` seconds."""
+
+    def __init__(self, wait_s: int) -> None:
+        self.wait_s = wait_s
+        super().__init__(f"too many requests; try again in {wait_s} s")
+
+
 class StudyConflictError(RefusedError):
     """A study's file was changed after people took part, without a new version."""
 

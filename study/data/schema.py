@@ -238,3 +238,13 @@ class ErasureRow(Base):
 
     __tablename__ = "erasures"
     participant_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+
+
+class LimitRow(Base):
+    """How often somebody did something ``since`` a moment; ``who`` is a keyed hash."""
+
+    __tablename__ = "limits"
+    kind: Mapped[str] = mapped_column(String(20), primary_key=True)
+    who: Mapped[str] = mapped_column(String(64), primary_key=True)
+    since: Mapped[datetime]
+    count: Mapped[int]

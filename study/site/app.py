@@ -13,7 +13,7 @@ from fastapi.responses import JSONResponse, PlainTextResponse, RedirectResponse,
 from starlette.exceptions import HTTPException
 
 from study.data.database import open_database
-from study.data.refusals import RefusedError, WithdrawnError
+from study.data.refusals import RefusedError, TooManyError, WithdrawnError
 from study.settings import Settings
 from study.site import (
     about,
@@ -115,6 +115,12 @@ def _handle_errors(app: FastAPI) -> None:
         if request.url.path in FOR_SCRIPTS:
             return _answer(request, 410, "WITHDRAWN")
         return RedirectResponse("/withdrawn", status_code=303)
+
+    @app.exception_handler(TooManyError)
+    async def too_many(request: Request, error: TooManyError) -> Response:
+        answer = _answer(request, 429, "TOO-MANY")
+        answer.headers["Retry-After"] = str(error.wait_s)
+        return answer
 
     @app.exception_handler(RefusedError)
     async def refused(request: Request, error: RefusedError) -> Response:

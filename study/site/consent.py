@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import entrance, progress
+from study.data import entrance, limits, progress
 from study.data.refusals import LinkUsedError
 from study.data.studies import Study
 from study.site.access import (
@@ -34,7 +34,12 @@ from study.site.frame import shared
 from study.site.language import Wishes, language_of
 from study.site.place import Here
 from study.site.problems import problem_page
-from study.site.signatures import SIMULATION_HEADER, is_simulation_token, sign_participant
+from study.site.signatures import (
+    SIMULATION_HEADER,
+    is_simulation_token,
+    sign_participant,
+    who_hash,
+)
 from study.texts import catalogue
 
 router = APIRouter(default_response_class=HTMLResponse)
@@ -115,6 +120,10 @@ def _enter(
     fields: dict[str, list[str]],
 ) -> str:
     """Enrol or find the person, with their consent; returns what proves who they are."""
+    simulated = _is_simulated(request, here)
+    if not simulated:
+        address = request.client.host if request.client else ""
+        limits.count(here.db, limits.JOINING, who_hash(here.secret, address))
     with here.db.writing():
         arrived = entrance.enter(
             here.db,
@@ -122,7 +131,7 @@ def _enter(
             arrival=to_store(here.secret, study, arrival.values),
             person_key=person_key(here.secret, study, arrival.values),
             link=arrival.link,
-            simulated=_is_simulated(request, here),
+            simulated=simulated,
             language=language_of(study, wishes),
             device={"user_agent_family": browser_family(request.headers.get("user-agent", ""))},
         )

@@ -79,6 +79,8 @@ def report(
 
     An answer that cannot be stored is refused kindly: the form says why when it is sent.
     """
+    if not visitor.is_simulated:
+        here.pace.check(visitor.name)
     if isinstance(entry, AnswerEntry):
         told = _answer(here, visitor, entry)
     elif isinstance(entry, PlayEntry):

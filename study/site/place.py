@@ -16,6 +16,7 @@ from study.data.database import Database
 from study.data.studies import Study
 from study.settings import Settings
 from study.site.media import ClipShelf
+from study.site.pace import Pace
 from study.site.resources import folder_version, resource_folder
 from study.texts import first_spoken
 
@@ -33,6 +34,7 @@ class Place:
     study_id: int | None
     clips: ClipShelf
     secret: str
+    pace: Pace = field(default_factory=Pace)
     static_folder: Path = field(default_factory=lambda: resource_folder("static"))
 
     def __post_init__(self) -> None:

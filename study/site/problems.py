@@ -28,6 +28,7 @@ class Problem:
 PROBLEMS: Final = {
     "FORM-OLD": Problem("form_old"),
     "OUT-OF-STEP": Problem("out_of_step"),
+    "TOO-MANY": Problem("too_many", "try_again"),
     "NO-STUDY": Problem("no_study", "try_again", "/"),
     "NOT-READABLE": Problem("not_readable"),
     "PAGE-404": Problem("page_404", "first_page", "/"),

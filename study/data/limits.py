@@ -1,0 +1,58 @@
+"""Limits: how often somebody may do something, counted for all server processes together.
+
+Nobody who takes part comes near them; they keep a program from filling the disk. ``who`` is a
+keyed hash, so that no address is stored.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import Any, Final
+
+from sqlalchemy import case, delete
+from sqlalchemy.dialects import postgresql, sqlite
+
+from study.data.database import Database
+from study.data.refusals import TooManyError
+from study.data.schema import LimitRow
+
+
+@dataclass(frozen=True)
+class Limit:
+    """At most ``most`` times within ``per``, which begins with the first time."""
+
+    kind: str
+    most: int
+    per: timedelta
+
+
+JOINING: Final = Limit("joining", 600, timedelta(minutes=10))
+"""Newcomers from one address: a full lecture hall behind one address stays below."""
+
+
+def count(db: Database, limit: Limit, who: str) -> None:
+    """Count that somebody does it once more; raises TooManyError if that is too often."""
+    now = db.now()
+    insert = _insert(db).values(kind=limit.kind, who=who, since=now, count=1)
+    is_over = LimitRow.since <= now - limit.per
+    query = insert.on_conflict_do_update(
+        index_elements=["kind", "who"],
+        set_={
+            "count": case((is_over, 1), else_=LimitRow.count + 1),
+            "since": case((is_over, now), else_=LimitRow.since),
+        },
+    ).returning(LimitRow.count, LimitRow.since)
+    with db.writing() as session:
+        session.execute(
+            delete(LimitRow).where(LimitRow.kind == limit.kind, is_over, LimitRow.who != who)
+        )
+        times, since = session.execute(query).one()
+    if times > limit.most:
+        raise TooManyError(max(1, math.ceil((since + limit.per - now).total_seconds())))
+
+
+def _insert(db: Database) -> Any:
+    kinds = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
+    return kinds[db.engine.dialect.name](LimitRow)
