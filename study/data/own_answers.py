@@ -31,12 +31,12 @@ LEFT, RIGHT = (f"_{eye}" for eye in EYES)
 
 
 def own_columns(questions: Sequence[Question], taken: Collection[str]) -> list[Column]:
-    """Return the columns of all questions but those whose ids are ``taken`` care of elsewhere."""
+    """Return the columns of all questions but those that are ``taken`` care of elsewhere."""
     return [
         column
         for asked in each_asked(questions)
-        if asked.id not in taken
         for column in _columns(asked, asked.id)
+        if column.name not in taken
     ]
 
 
