@@ -67,9 +67,7 @@ def run(options: argparse.Namespace) -> int:
     finally:
         prepared.db.close()
     print(out)
-    print(
-        f"{options.count} new personal links; {found.used} used and {found.unused} unused in all."
-    )
+    print(f"{len(made)} new personal links; in all {found.used} used and {found.unused} unused.")
     return 0
 
 
