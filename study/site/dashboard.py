@@ -12,6 +12,7 @@ from fastapi.responses import HTMLResponse, Response
 from study.data import dashboard, jobs
 from study.data.quality import quality
 from study.data.studies import Study
+from study.design.certificate import REASONS
 from study.site.access import ResearcherHere, ResearchersForm, SignedIn, redirect
 from study.site.place import Here
 
@@ -78,6 +79,7 @@ def overview(here: Here, researcher: ResearcherHere) -> Response:
         "researcher/overview.html",
         **frame(study, researcher, "", "Overview"),
         found=found,
+        reason_words=REASONS,
         kinds=[
             ("People", found.real, good.real, False),
             *(

@@ -95,7 +95,13 @@ def test_the_overview_counts_real_and_simulated_people_apart(site: Any, ada: Any
     assert tile(page, "Completed") == ["0", "3"]
     assert tile(page, "Trials") == ["1", "6"]
     assert tile(page, "Answers missing")[0] == "25.0 %"
-    assert tile(page, "Seen in full") == ["0 %", "100 %"]
+    assert tile(page, "Certified") == ["0 %", "100 %"]
+    assert "0 of 1 trials" in page
+    reasons = re.findall(r'<td class="mono">([\w-]+)</td><td>([^<]*)</td>', page)
+    assert reasons == [
+        ("frames-missing", "not every frame is known to have been presented"),
+        ("frames-dropped", "the browser dropped frames"),
+    ]
     assert tile(page, "Dropped frames") == ["1", "0"]
     assert 'class="simulated">SIMULATED' in page
 
