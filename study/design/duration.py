@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from study.design.definition import StudyDefinition
-from study.design.questions import NumberQuestion, Question, TextQuestion
+from study.design.questions import Asked, NumberQuestion, Question, TextQuestion, each_asked
 from study.design.texts import Paragraph
 
 WORDS_PER_S: Final = 238 / 60
@@ -69,10 +69,10 @@ def _reading_s(paragraphs: Iterable[Paragraph], more: Iterable[str] = ()) -> flo
 
 
 def _answering_s(questions: Iterable[Question]) -> float:
-    return sum(_question_s(question) for question in questions)
+    return sum(_question_s(question) for question in each_asked(questions))
 
 
-def _question_s(question: Question) -> float:
+def _question_s(question: Asked) -> float:
     seconds = CHOICE_S
     if isinstance(question, TextQuestion):
         seconds = TEXT_S if question.is_required else TEXT_S * TEXT_SHARE

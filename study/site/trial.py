@@ -18,6 +18,7 @@ from study.site.frame import shared
 from study.site.media import clip_url
 from study.site.place import Here
 from study.site.problems import problem_page
+from study.site.time_left import minutes_left
 
 router = APIRouter(default_response_class=HTMLResponse)
 Say = Callable[..., str]
@@ -71,7 +72,8 @@ def _trial_page(
         views_allowed=_views_allowed(definition.order.max_views, found),
         retries=definition.certificate.retries,
         code=f"{visitor.name.upper()}-{found.position}",
-        seconds=round(record.frame_count / record.fps),
+        seconds=max(1, round(record.frame_count / record.fps)),
+        minutes_left=minutes_left(definition, every),
         rows=question_rows(definition.questions),
         answers={**found.answers, **(given or {})},
         faults=error.said(text) if error else {},
