@@ -5,13 +5,14 @@ from __future__ import annotations
 import statistics
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from datetime import datetime
 
 from study.data.collection import Collected, CollectedTrial, collect
 from study.data.database import Database
 from study.data.studies import Study
 from study.data.trials import PLAYED, complete_plays
+from study.data.validity import Tally, tally_of
 from study.design.certificate import Certificate, Verdict, judge_trial
 from study.design.definition import StudyDefinition
 from study.design.questions import TextQuestion, each_asked, is_shown
@@ -35,7 +36,8 @@ class Quality:
 
     ``certified`` of the ``counted`` trials had a play that passed the study's rule; of the others
     nobody could count the frames. ``reasons`` says why trials were not certified, the commonest
-    first. ``median_views`` is None while there is no trial.
+    first. ``median_views`` is None while there is no trial. ``checks`` adds up everybody's gold
+    trials and attention questions.
     """
 
     trials: int
@@ -47,6 +49,7 @@ class Quality:
     with_drops: int
     interrupted_plays: int
     median_views: float | None
+    checks: Tally
     problems: Sequence[Problem]
 
 
@@ -90,8 +93,17 @@ def _quality(study: Study, people: Sequence[Collected]) -> Quality:
             not play.get("is_complete") for trial in done for play in _plays(trial)
         ),
         median_views=statistics.median(t.trial.views for t in done) if done else None,
+        checks=_checks(study.definition, people),
         problems=_problems(people),
     )
+
+
+def _checks(definition: StudyDefinition, people: Sequence[Collected]) -> Tally:
+    own = [
+        asdict(tally_of(definition, (c.trial for c in person.trials), person.attention))
+        for person in people
+    ]
+    return Tally(**{field.name: sum(one[field.name] for one in own) for field in fields(Tally)})
 
 
 def _plays(trial: CollectedTrial) -> list[dict[str, object]]:

@@ -12,6 +12,7 @@ from fastapi.responses import HTMLResponse, Response
 from study.data import dashboard, jobs
 from study.data.quality import quality
 from study.data.studies import Study
+from study.design.arms import Arm
 from study.design.certificate import REASONS
 from study.site.access import ResearcherHere, ResearchersForm, SignedIn, redirect
 from study.site.place import Here
@@ -78,6 +79,7 @@ def overview(here: Here, researcher: ResearcherHere) -> Response:
     return here.page(
         "researcher/overview.html",
         **frame(study, researcher, "", "Overview"),
+        arm_groups=_by_size_and_direction(found.arms),
         found=found,
         reason_words=REASONS,
         kinds=[
@@ -91,6 +93,14 @@ def overview(here: Here, researcher: ResearcherHere) -> Response:
         jobs=_interesting(jobs.all_jobs(here.db, wanted_ids(study))),
         clips=_clips_by_id(study),
     )
+
+
+def _by_size_and_direction(filled: Mapping[Arm, int]) -> dict[tuple[str, str], list[int]]:
+    """Return the counts of the arms that differ in their block alone, together."""
+    groups: dict[tuple[str, str], list[int]] = {}
+    for arm, count in filled.items():
+        groups.setdefault((arm.size, arm.orbit_direction), []).append(count)
+    return groups
 
 
 def wanted_ids(study: Study) -> set[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -136,3 +137,13 @@ def test_nobody_meets_a_pause_who_is_not_at_one(guest: Any) -> None:
     guest.walk_to_trial()
     guest.get("/pause")
     assert guest.at == "/trial/1"
+
+
+def test_the_dashboard_counts_checks_and_groups_the_blocks(guest: Any) -> None:
+    to_question(guest)
+    guest.post("/pause", pause=guest.hidden("pause"), colour="red")
+    guest.sign_in()
+    text = " ".join(re.sub(r"<[^>]*>", " ", guest.get("/researcher").text).split())
+    assert "Gold trials passed 1 of 1" in text
+    assert "Attention passed 0 of 1" in text
+    assert "320x180 rightward 1 0 1" in text  # one person, in one of six blocks
