@@ -20,6 +20,7 @@ CHOICE_S, NUMBER_S, TEXT_S = 3.0, 5.0, 10.0  # a scale is a choice; a text is a 
 TEXT_SHARE: Final = 1 / 3  # so many write something where they need not
 SHOWN_SHARE: Final = 1 / 2  # so often a question with a rule is shown
 STEPS_S: Final = {"device_check": 40.0, "calibration": 75.0, "eyesight": 90.0}
+OWN_WORDS: Final = 205  # of every consent: the motion warning, and what withdrawing means
 PREPARING_S: Final = 15.0
 BREAK_S: Final = 20.0
 
@@ -31,7 +32,7 @@ def visit_parts(definition: StudyDefinition) -> dict[str, float]:
     steps = [name for name in STEPS_S if getattr(definition, name, None) is not None]
     consent, about = definition.consent, definition.about_page
     parts = {
-        "consent": _reading_s(consent.paragraphs, consent.statements),
+        "consent": _reading_s(consent.paragraphs, consent.statements) + OWN_WORDS / WORDS_PER_S,
         "questions about you": _reading_s(about.paragraphs) + _answering_s(definition.about)
         if definition.about
         else 0.0,

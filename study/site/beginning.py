@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, Response
 
 from study.data import entrance, participants
 from study.design.definition import StudyDefinition
+from study.design.duration import minutes
 from study.site.access import (
     PARTICIPANT_COOKIE,
     REMEMBER_S,
@@ -29,14 +29,10 @@ from study.site.signatures import sign_participant
 
 router = APIRouter(default_response_class=HTMLResponse)
 
-QUESTIONNAIRE_S: Final = 45  # for one clip's questions, by our own trials
-AROUND_S: Final = 150  # for everything before and after the clips
-
 
 def minutes_of(definition: StudyDefinition) -> int:
     """Estimate how long taking part takes, rounded up to five minutes."""
-    one_s = 1.5 * definition.orbit.duration_s + QUESTIONNAIRE_S
-    return 5 * math.ceil((AROUND_S + clips_of(definition) * one_s) / 300)
+    return 5 * math.ceil(minutes(definition) / 5)
 
 
 def clips_of(definition: StudyDefinition) -> int:
