@@ -54,8 +54,9 @@ export function startEyesight(main, { start }) {
   }
 
   function toPlates() {
-    if (Number(data.plates)) show("plates-intro");
-    else send();
+    if (!Number(data.plates)) return send();
+    load(1);
+    show("plates-intro");
   }
 
   function skip(part) {
@@ -94,9 +95,19 @@ export function startEyesight(main, { start }) {
     const number = report.digits.length + 1;
     const total = Number(data.plates);
     if (number > total) return send();
-    find("[data-plate]").src = `/eyesight/plates/${number}.svg`;
+    find("[data-plate]").src = address(number);
     find("[data-plate-number]").textContent = text("eyesight.plate_number", { number, total });
-    if (number < total) new Image().src = `/eyesight/plates/${number + 1}.svg`;
+    if (number < total) load(number + 1);
+  }
+
+  /** Browsers may keep a plate for a while: the next person's has another address. */
+  function address(number) {
+    return `/eyesight/plates/${number}.svg?${document.body.dataset.session}`;
+  }
+
+  /** Have a plate drawn and sent before it is wanted. */
+  function load(number) {
+    new Image().src = address(number);
   }
 
   function read(digit) {

@@ -96,7 +96,9 @@ def plate(here: Here, visitor: AVisitor, number: int) -> Response:
     mine = _plates(visitor)
     if not 1 <= number <= len(mine) or not _has_agreed(here, visitor):
         raise HTTPException(404)
-    return Response(plate_svg(mine[number - 1]), media_type="image/svg+xml")
+    # Kept, so that a plate loaded ahead is there at once; its address names the participant.
+    kept = {"Cache-Control": "private, max-age=600"}
+    return Response(plate_svg(mine[number - 1]), media_type="image/svg+xml", headers=kept)
 
 
 @router.post("/eyesight")
