@@ -19,7 +19,7 @@ STEPS_PER_OCTAVE: Final = 5.0  # what doubles or halves a clip's file
 FINEST_BY: Final = 6.0  # steps; a picture of 720 lines then takes what one of 1080 does
 
 # How much finer the eyes can be than at macroscopic for as many bytes: they are smaller.
-FINER: Final = {"macroscopic": 0.0, "near": 4.5, "medium": 9.5, "far": 9.5}
+FINER: Final = {"macroscopic": 0.0, "near": 4.8, "medium": 9.5, "far": 9.5}
 
 
 def max_bytes(spec: ClipSpec) -> int:
