@@ -7,7 +7,7 @@ import { submitPatiently } from "./navigate.js";
 import { screenFacts } from "./screen.js";
 import { text } from "./texts.js";
 
-const STARTS_PX = [200, 460]; // CSS pixels: once from too small, once from too large
+const STARTS_PX = [200, 420]; // CSS pixels: once from too small, once from too large
 const GUESS_MM_PER_PX = 0.25;
 const PERSON_SHARE = 0.074; // how much the blind spot's place differs between people
 
