@@ -129,6 +129,7 @@ export class PlayRecord {
       record_version: 2,
       is_complete: endedBy === "end",
       ended_by: endedBy,
+      was_hidden: endedBy === "hidden" || this.hidden.total_ms > 0,
       started_at: this.started_at,
       counted_by: this.counted_by,
       expected_frames: this.options.frames,

@@ -72,6 +72,7 @@ export function startPreparing(main, { clips, start }) {
       meter.value = Math.min(1, bytes / total);
       amount.textContent = amountText(bytes, total);
     };
+    clips.onProgress();
     try {
       await Promise.all(first.map((clip) => clips.load(clip)));
       meter.value = 1;

@@ -28,8 +28,7 @@ export class Tab {
 
   /** Take the lease if no other tab holds it; returns whether this tab holds it now. */
   claim() {
-    const held = this.read();
-    const isFree = !held || held.name === this.name || held.until < Date.now();
+    const isFree = !this.isOthers(this.read());
     if (isFree) this.take();
     return isFree;
   }
@@ -40,9 +39,14 @@ export class Tab {
     this.write(LEASE_MS);
   }
 
+  isOthers(held) {
+    if (!held || held.name === this.name) return false;
+    const left_ms = held.until - Date.now();
+    return left_ms >= 0 && left_ms <= LEASE_MS; // more than a whole lease: the clock was set back
+  }
+
   look() {
-    const held = this.read();
-    const isOther = held && held.name !== this.name && held.until >= Date.now();
+    const isOther = this.isOthers(this.read());
     if (this.isHolder && isOther) {
       this.isHolder = false;
       this.options.onLost();

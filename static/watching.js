@@ -62,6 +62,7 @@ export function startWatching(main, options) {
       meter.value = bytes / clip.bytes;
       amount.textContent = amountText(bytes, clip.bytes);
     };
+    clips.onProgress();
     try {
       await openEitherWay(await clips.loadFirst(clip));
       // What comes next is fetched while this clip is looked at; its own page tells of failures.

@@ -25,8 +25,12 @@ router = APIRouter()
 
 
 # Plain values, and intervals as pairs of times in ms.
-Interval = tuple[float, float]
-Fact = bool | int | float | Annotated[str, Field(max_length=300)] | list[Interval] | None
+Whole = Annotated[int, Field(ge=-(2**53), le=2**53)]
+Real = Annotated[float, Field(ge=-1e15, le=1e15, allow_inf_nan=False)]
+Interval = tuple[Real, Real]
+Fact = bool | Whole | Real | Annotated[str, Field(max_length=300)] | list[Interval] | None
+
+Position = Annotated[int, Field(ge=0, le=100_000)]
 
 
 class Entry(BaseModel):
@@ -45,7 +49,7 @@ class AnswerEntry(Entry):
     """An answer to one question of a trial; without a trial, of the page about the participant."""
 
     kind: Literal["answer"]
-    position: int | None = None
+    position: Position | None = None
     question: Annotated[str, Field(max_length=60)]
     value: Annotated[str, Field(max_length=20_000)] | Ticked
 
@@ -54,7 +58,7 @@ class PlayEntry(Entry):
     """One play of a trial's clip, finished or not."""
 
     kind: Literal["play"]
-    position: int
+    position: Position
     play: Annotated[dict[str, Fact], Field(max_length=100)]
 
 
@@ -62,7 +66,7 @@ class ProblemEntry(Entry):
     """Something that stopped the participant, by its code."""
 
     kind: Literal["problem"]
-    position: int | None = None
+    position: Position | None = None
     code: Annotated[str, Field(max_length=200)]
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
-from study.data import export
+from study.data import export, trials
 from study.design.certificate import Certificate, judge
 
 RULE = Certificate()  # the product's own, never a laxer one
@@ -148,7 +148,7 @@ def test_a_throttled_processor_fails(visit: Any, page: Page, context: BrowserCon
     assert {"frames-missing", "frames-dropped", "gap"} & set(verdict.reasons)
 
 
-def test_a_page_that_was_hidden_fails(visit: Any, page: Page) -> None:
+def test_a_page_that_was_hidden_fails(visit: Any, site: Any, page: Page) -> None:
     visit.straight_to_trial()
     visit.state("ready")
     # Tabs of a headless browser are never hidden: say it as the browser would.
@@ -163,8 +163,9 @@ def test_a_page_that_was_hidden_fails(visit: Any, page: Page) -> None:
     expect(page.locator("input[name=rating_left]").first).to_be_disabled()
     visit.saved()
     [play] = visit.recorded("played")
-    assert play["ended_by"] == "hidden"
-    assert judge(play, RULE).reasons[0] == "incomplete"
+    assert (play["ended_by"], play["was_hidden"]) == ("hidden", True)
+    assert {"incomplete", "hidden"} <= set(judge(play, RULE).reasons)
+    assert trials.all_trials(site.db, site.people()[0])[0].views == 0
 
 
 def test_a_reload_in_mid_clip_is_a_play_that_was_interrupted(

@@ -80,10 +80,12 @@ def test_clips_are_served_whole_and_by_ranges(guest: Any) -> None:
     assert part.headers["content-range"] == f"bytes 0-1/{clip['bytes']}"
     resumed = {"Range": "bytes=2-3", "If-Range": whole.headers["etag"]}
     assert guest.client.get(clip["url"], headers=resumed).content == whole.content[2:4]
-    assert guest.client.get(clip["url"], headers={**resumed, "If-Range": '"old"'}).status_code == 200
+    assert (
+        guest.client.get(clip["url"], headers={**resumed, "If-Range": '"old"'}).status_code == 200
+    )
 
 
-def test_a_clip_is_named_by_its_contents_and_tells_no_time(site: Any, guest: Any) -> None:
+def test_a_clip_is_named_by_its_contents_and_tells_no_time(guest: Any) -> None:
     guest.walk_to_preparing()
     clips = guest.client.get(STATE).json()["clips"]
     answers = [guest.client.get(clip["url"]) for clip in clips]
@@ -181,3 +183,29 @@ def test_a_play_that_was_interrupted_is_kept_and_does_not_unlock(site: Any, gues
     [person] = site.people()
     plays = [e for e in events.history(site.db, person) if e.kind == "played"]
     assert [play.payload["was_hidden"] for play in plays] == [True]
+
+
+def test_a_record_that_cannot_be_is_refused(guest: Any) -> None:
+    guest.walk_to_trial()
+    headers = {"X-CSRF-Token": guest.data("csrf"), "Content-Type": "application/json"}
+    long = '"' + 301 * "x" + '"'
+    for fact in ("1e999", "NaN", "-Infinity", "1" + 400 * "0", long, "[[0, 1e999]]", "[[1]]"):
+        entry = '{"kind": "play", "key": "k", "position": 1, "play": {"gap": ' + fact + "}}"
+        answer = guest.client.post("/events", content=entry, headers=headers)
+        assert (answer.status_code, answer.json()) == (422, {"code": "NOT-READABLE"}), fact[:20]
+
+
+def test_the_site_judges_a_play_by_its_own_knowledge_of_the_clip(site: Any, guest: Any) -> None:
+    guest.walk_to_trial()
+    told = guest.watch().json()
+    assert told == {"ok": True, "new": True, "key": "play-1-1", "certified": True, "reasons": []}
+    # A browser that tells of fewer frames, or plays another file, is not believed.
+    told = guest.watch(key="few", expected_frames=5, presented_frames=5).json()
+    assert (told["certified"], told["reasons"]) == (False, ["frames-missing"])
+    told = guest.watch(key="other", clip_sha256="ab").json()
+    assert told["reasons"] == ["other-clip"]
+    again = guest.watch(key="other", clip_sha256="ab").json()
+    assert (again["new"], again["key"]) == (False, "other-1")
+    [person] = site.people()
+    plays = [e.payload for e in events.history(site.db, person) if e.kind == "played"]
+    assert [play["expected_frames"] for play in plays] == [15, 15, 15]
