@@ -17,11 +17,12 @@ from alembic.config import Config
 from alembic.util import CommandError
 from sqlalchemy import Engine, make_url, text
 from sqlalchemy.engine import URL
-from sqlalchemy.exc import ArgumentError, DBAPIError
+from sqlalchemy.exc import ArgumentError, DataError, DBAPIError
 from sqlalchemy.orm import Session
 
 from study.data.commits import GroupCommit
 from study.data.engines import DRIVER, make_engine, reading_engine
+from study.data.refusals import UnusablePayloadError
 
 Clock = Callable[[], datetime]
 MIGRATION_LOCK: Final = 71_202_611  # any number, the same for all who migrate one database
@@ -83,6 +84,8 @@ class Database:
             mark = self._session.set((session, is_writing))
             try:
                 yield session
+            except DataError as error:  # no column holds this: a number too large, a NUL
+                raise UnusablePayloadError(f"no database can store this: {error.orig}") from error
             finally:
                 self._session.reset(mark)
 

@@ -7,6 +7,7 @@ consent or withdrew is in no table.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -75,12 +76,25 @@ def write(db: Database, study: Study, folder: Path) -> list[Path]:
 
 
 def csv_of(frame: pd.DataFrame) -> str:
-    """Write a table as CSV: true and false in lower case, missing empty, one line break per row."""
+    """Write a table as CSV: true and false in lower case, missing empty, one line break per row.
+
+    Words that a spreadsheet would run as a formula get an apostrophe before them.
+    """
     plain = frame.copy()
     for name in plain.columns:
         if plain[name].dtype == "boolean":
             plain[name] = plain[name].map({True: "true", False: "false"}, na_action="ignore")
+        elif plain[name].dtype == "string":
+            plain[name] = plain[name].map(_harmless, na_action="ignore")
     return str(plain.to_csv(index=False, lineterminator="\n"))
+
+
+_FORMULA: Final = re.compile(r"[=+\-@\t\r](?![0-9.]+$)")  # how a formula begins; numbers may
+
+
+def _harmless(text: str) -> str:
+    """Return words that no spreadsheet takes for a formula (OWASP, "CSV Injection")."""
+    return f"'{text}" if _FORMULA.match(text) else text
 
 
 def _is_in(person: Collected) -> bool:
