@@ -33,6 +33,7 @@ COMMANDS: Final = (
     "links",
     "erase",
     "simulate",
+    "load",
     "export",
     "analyse",
     "researcher",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -23,12 +24,12 @@ class Timings:
 
     seconds: dict[str, list[float]] = field(default_factory=dict)
     errors: dict[str, int] = field(default_factory=dict)
-    began: float = 0.0
-    ended: float = 0.0
+    began: float = math.inf
+    ended: float = math.inf
 
     def note(self, kind: str, seconds: float, status: int) -> None:
         """Count one request that ended now, if it ended while we measure."""
-        if not self.began <= time.perf_counter() < (self.ended or float("inf")):
+        if not self.began <= time.perf_counter() < self.ended:
             return
         if status == 0 or status >= 400:
             name = f"{kind}: {status or 'no answer'}"
@@ -59,7 +60,7 @@ class Timings:
 
 @dataclass
 class Crowd:
-    """``people`` at once for ``seconds``, after a warm-up in which they all arrive.
+    """``people`` at once for ``seconds``, once all of them have come to the clips.
 
     ``pause_s`` is the mean time that a person takes between two requests, 0 for none.
     """
@@ -68,40 +69,54 @@ class Crowd:
     definition: StudyDefinition
     people: int
     seconds: float
-    warm_up_s: float = 3.0
+    arrival_s: float = 60.0
     pause_s: float = 0.0
     uses_outbox: bool = True
     seed: int = 1
     headers: Mapping[str, str] = field(default_factory=dict)
     timings: Timings = field(default_factory=Timings)
     stored: list[Acknowledged] = field(default_factory=list)
+    _there: set[int] = field(default_factory=set)
 
     async def run(self, report: Callable[[int], None] = lambda _done: None) -> Timings:
         """Let them take part until the time is over; those under way stop where they are."""
-        self.timings.began = time.perf_counter() + self.warm_up_s
-        self.timings.ended = self.timings.began + self.seconds
         places = [asyncio.create_task(self._place(n, report)) for n in range(self.people)]
-        late = asyncio.create_task(asyncio.sleep(self.warm_up_s + self.seconds))
+        clock = asyncio.create_task(self._measure())
         # Places never end by themselves: whatever ends first is the time, or an error.
-        await asyncio.wait([late, *places], return_when=asyncio.FIRST_COMPLETED)
+        await asyncio.wait([clock, *places], return_when=asyncio.FIRST_COMPLETED)
         failed = [place.exception() for place in places if place.done()]
-        for task in (late, *places):
+        for task in (clock, *places):
             task.cancel()
-        await asyncio.gather(late, *places, return_exceptions=True)
+        await asyncio.gather(clock, *places, return_exceptions=True)
         for error in failed:
             if error is not None:
                 raise error
         return self.timings
 
+    async def _measure(self) -> None:
+        """Wait until everybody is at the clips, or long enough, then measure."""
+        deadline = time.perf_counter() + self.arrival_s
+        while len(self._there) < self.people and time.perf_counter() < deadline:
+            await asyncio.sleep(0.05)
+        self.timings.began = time.perf_counter()
+        self.timings.ended = self.timings.began + self.seconds
+        await asyncio.sleep(self.seconds)
+
     async def _place(self, number: int, report: Callable[[int], None]) -> None:
         """Fill one place: somebody comes as soon as the one before is done."""
         rng = np.random.default_rng([self.seed, number])
-        await asyncio.sleep(float(rng.uniform(0, self.warm_up_s / 2)))
+        await asyncio.sleep(float(rng.uniform(0, 2)))
+
+        def note(kind: str, seconds: float, status: int) -> None:
+            if kind in ("play", *ANSWERS):
+                self._there.add(number)
+            self.timings.note(kind, seconds, status)
+
         while True:
             person = Person(
                 Wire(self.url, headers=self.headers),
                 rng,
-                note=self.timings.note,
+                note=note,
                 pause_s=self.pause_s,
                 definition=self.definition,
                 uses_outbox=self.uses_outbox,

@@ -1,0 +1,83 @@
+"""What a load run measured, as a table and as plain values."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Final
+
+from study.load.crowd import ANSWERS, Timings
+
+HEAD: Final = (
+    *("database", "processes", "fsync", "people", "pause s"),
+    *("answers/s", "requests/s", "p50 ms", "p95 ms", "p99 ms", "errors", "lost"),
+)
+
+
+@dataclass(frozen=True)
+class Figures:
+    """One run: where, with how many, and what came out. Times are of all requests."""
+
+    database: str
+    processes: int
+    fsync: bool
+    people: int
+    pause_s: float
+    seconds: float
+    answers_per_s: float
+    requests_per_s: float
+    questionnaires_per_s: float
+    p50_ms: float
+    p95_ms: float
+    p99_ms: float
+    errors: int
+    lost: int
+
+    def row(self) -> list[str]:
+        """Return the cells of a table's row."""
+        return [
+            self.database,
+            str(self.processes),
+            "on" if self.fsync else "off",
+            str(self.people),
+            f"{self.pause_s:g}",
+            f"{self.answers_per_s:.0f}",
+            f"{self.requests_per_s:.0f}",
+            *(f"{value:.0f}" for value in (self.p50_ms, self.p95_ms, self.p99_ms)),
+            str(self.errors),
+            str(self.lost),
+        ]
+
+    def plain(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        return asdict(self)
+
+
+def figures_of(timings: Timings, *, lost: int, **facts: Any) -> Figures:
+    """Summarise what was measured; ``facts`` say where and with how many."""
+    return Figures(
+        **facts,
+        answers_per_s=timings.rate(*ANSWERS),
+        requests_per_s=timings.rate(),
+        questionnaires_per_s=timings.rate("questionnaire"),
+        p50_ms=timings.quantile_ms(0.5),
+        p95_ms=timings.quantile_ms(0.95),
+        p99_ms=timings.quantile_ms(0.99),
+        errors=sum(timings.errors.values()),
+        lost=lost,
+    )
+
+
+def table(rows: Sequence[Figures]) -> str:
+    """Return a Markdown table, one line per run."""
+    lines = [list(HEAD), *(row.row() for row in rows)]
+    widths = [max(len(line[n]) for line in lines) for n in range(len(HEAD))]
+    text = ["| " + " | ".join(c.rjust(w) for c, w in zip(line, widths, strict=True)) + " |"
+            for line in lines]  # fmt: skip
+    return "\n".join([text[0], "|" + "|".join("-" * (w + 2) for w in widths) + "|", *text[1:]])
+
+
+def machine() -> str:
+    """Say how many cores there are and how busy they were."""
+    return f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
