@@ -102,4 +102,4 @@ def _person(session: Session, person_key: str) -> ParticipantRow | None:
 def _recruited_by(arrival: Mapping[str, str] | None, link: str | None) -> str:
     if link is not None:
         return "personal link"
-    return "parameters" if arrival else "link"
+    return "recruiter" if arrival else "link"

@@ -190,7 +190,7 @@ def step_url(step: Step) -> str:
     """Return the page of a step."""
     if step.trial is not None:
         return f"/trial/{step.trial.position}"
-    return {"about": "/about-you", "device_check": "/device-check", "screened_out": "/screened-out"}.get(step.name, f"/{step.name}")
+    return "/about-you" if step.name == "about" else f"/{step.name.replace('_', '-')}"
 
 
 def step_of(here: Here, visitor: Visitor, *expected: str) -> Step:

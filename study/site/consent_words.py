@@ -15,11 +15,12 @@ from study.texts import Catalogue
 
 @dataclass(frozen=True)
 class ConsentWords:
-    """The texts of the page; ``health`` is empty where a study asks nothing about eyesight."""
+    """The texts of the page; what a study does not need is empty."""
 
     title: str
     motion_warning: str
     paragraphs: tuple[tuple[str, str], ...]
+    parameters: str
     withdrawal: tuple[str, ...]
     statements: tuple[str, ...]
     health: str
@@ -40,6 +41,7 @@ def consent_words(definition: StudyDefinition, words: Catalogue) -> ConsentWords
         title=consent.title,
         motion_warning=consent.motion_warning or text("consent.motion"),
         paragraphs=tuple((p.heading, p.text) for p in consent.paragraphs),
+        parameters=_parameters(definition, words),
         withdrawal=_withdrawal(definition, words),
         statements=_statements(definition, words),
         health="" if health is None else health.text or text("consent.health"),
@@ -47,6 +49,12 @@ def consent_words(definition: StudyDefinition, words: Catalogue) -> ConsentWords
         if health is None
         else health.statement or text("consent.health_statement"),
     )
+
+
+def _parameters(definition: StudyDefinition, words: Catalogue) -> str:
+    """Say what the addresses of those who invite people bring; nothing where they bring nothing."""
+    names = ", ".join(one.name for one in definition.entrance.parameters)
+    return words.text("consent.parameters", names=names) if names else ""
 
 
 def _withdrawal(definition: StudyDefinition, words: Catalogue) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, Response
 
 from study.data import completion, own_data
-from study.design.completion import filled, names_in
+from study.design.completion import GENERATED, filled, names_in
 from study.design.texts import Paragraph
 from study.site.access import AVisitor, Visitor, step_of
 from study.site.frame import shared
@@ -52,6 +52,7 @@ def _last_page(here: Here, visitor: Visitor) -> Response:
             "thanks.code" if outcome == completion.COMPLETED else f"ending.{outcome}.code"
         ),
         completion_code=code,
+        is_own_code=definition.endings.code_of(outcome) == GENERATED,
         redirect=way_back(visitor, ending.redirect, code),
         redirect_label=ending.redirect_label or text("thanks.way_back"),
     )

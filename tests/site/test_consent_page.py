@@ -26,7 +26,7 @@ def definition(definition: StudyDefinition, changes: dict[str, Any]) -> StudyDef
     return parse_definition(data)
 
 
-def with_consent(**changes: Any) -> Any:
+def with_consent(**changes: Any) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("changes", [changes])
 
 

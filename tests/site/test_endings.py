@@ -46,7 +46,7 @@ def definition(definition: StudyDefinition, changes: dict[str, Any]) -> StudyDef
     return parse_definition(data | changes)
 
 
-def with_changes(**changes: Any) -> Any:
+def with_changes(**changes: Any) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("changes", [changes])
 
 
@@ -65,6 +65,7 @@ def test_a_completed_session_shows_the_studys_code_and_the_way_back(guest: Any) 
     assert '<p class="code" dir="ltr" id="completion-code">C1DONE</p>' in guest.page.text
     assert 'href="https://app.prolific.com/submissions/complete?cc=C1DONE"' in guest.page.text
     assert "Back to Prolific" in guest.page.text
+    assert "names your answers" not in guest.page.text  # a code for all names nobody
 
 
 def test_everybody_has_the_code_that_the_study_gives_to_all(site: Any) -> None:

@@ -33,7 +33,7 @@ def definition(definition: StudyDefinition, recruiting: dict[str, Any]) -> Study
     return parse_definition(data | {"recruiting": recruiting})
 
 
-def with_recruiting(**table: Any) -> Any:
+def with_recruiting(**table: Any) -> pytest.MarkDecorator:
     return pytest.mark.parametrize("recruiting", [table])
 
 
@@ -52,6 +52,7 @@ def people(site: Any) -> Any:
 def test_parameters_are_kept_as_the_study_file_says(site: Any, guest: Any) -> None:
     page = guest.get(COMING)
     assert (guest.at, str(page.url.query)) == ("/", "b''")  # nobody passes on a name by accident
+    assert "carries PROLIFIC_PID, STUDY_ID, SESSION_ID" in guest.get("/consent").text
     guest.walk_to_preparing()
     row = people(site).iloc[0]
     assert row["STUDY_ID"] == "st-1"
