@@ -28,6 +28,14 @@ def lod_order(ratings: pd.DataFrame) -> list[str]:
     return [*known, *sorted(ranks.index[ranks.isna()])]
 
 
+def lod_ranks(ratings: pd.DataFrame) -> dict[str, float]:
+    """Return each LoD's rank; -1, below all others, for those without one."""
+    rows = ratings.drop_duplicates("lod")
+    return {
+        str(lod): float(r) for lod, r in zip(rows["lod"], rows["lod_rank"].fillna(-1), strict=True)
+    }
+
+
 def natural(name: object) -> tuple[tuple[int, int | str], ...]:
     """Return a key that sorts clip-2 before clip-10."""
     parts = re.findall(r"\d+|\D+", str(name))

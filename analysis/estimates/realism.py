@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analysis.estimates.stimuli import Cell, Stimuli, stimuli_of
+from analysis.models.draws import draw
 from analysis.models.fitting import OrdinalFit, fit
 from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE, OrdinalModel
 from analysis.models.priors import PRIORS
 from analysis.models.quadrature import normal_grid
 
 Floats = NDArray[np.float64]
-DRAWS: Final = 4000
 ENOUGH_FOR_STYLE: Final = 30.0  # ratings per person from which scatter and style can be told
 _STYLE_NODES: Final = 7
 
@@ -125,17 +125,6 @@ def realism_of(
     often = np.array([given.get(who, 1.0) for who in stimuli.people])
     found = fit(model, counts, priors=PRIORS, weights=often if weights else None)
     return Realism(stimuli, found, draw(found, rng, people=counts.people))
-
-
-def draw(found: OrdinalFit, rng: np.random.Generator, *, people: int) -> Floats:
-    """Draw parameters (DRAWS, n_parameters) from Student's t about a fit."""
-    freedom = max(people - 1, 1)
-    values, vectors = np.linalg.eigh(found.covariance)
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    normal = rng.standard_normal((DRAWS, len(values))) @ root.T
-    return np.asarray(
-        found.parameters + normal / np.sqrt(rng.chisquare(freedom, (DRAWS, 1)) / freedom)
-    )
 
 
 def _node(nodes: dict[str, Floats], effect: str, place: int) -> float:

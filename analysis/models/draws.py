@@ -1,0 +1,24 @@
+"""Draws from what a fit leaves open: every interval and every share of draws is made from them."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from analysis.models.fitting import OrdinalFit
+
+Floats = NDArray[np.float64]
+DRAWS: Final = 4000
+
+
+def draw(found: OrdinalFit, rng: np.random.Generator, *, people: int) -> Floats:
+    """Draw parameters (DRAWS, n_parameters) from Student's t about a fit."""
+    freedom = max(people - 1, 1)
+    values, vectors = np.linalg.eigh(found.covariance)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    normal = rng.standard_normal((DRAWS, len(values))) @ root.T
+    return np.asarray(
+        found.parameters + normal / np.sqrt(rng.chisquare(freedom, (DRAWS, 1)) / freedom)
+    )
