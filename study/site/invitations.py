@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import links, participants
+from study.data import links, participants, studies
 from study.site.access import PARTICIPANT_COOKIE, REMEMBER_S, MaybeVisitor, redirect, remember
 from study.site.arrival import Arrival, to_first_page
 from study.site.place import Here
@@ -19,7 +19,7 @@ router = APIRouter(default_response_class=HTMLResponse)
 def open_link(request: Request, here: Here, visitor: MaybeVisitor, token: str) -> Response:
     """Let in the person that a link is for, or back in; refuse whoever comes after the end."""
     link = links.find(here.db, token)
-    if link is None:
+    if link is None or studies.by_id(here.db, link.study_id).key != here.study().key:
         return problem_page(request, status=404, code="LINK-UNKNOWN")
     if link.participant is None:
         if link.is_used:  # by somebody who withdrew

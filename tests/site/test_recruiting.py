@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from datetime import timedelta
 from typing import Any
 
 import pytest
 
-from study.data import events, export, links, participants
+from study.data import events, export, links, participants, studies
 from study.data.schema import ParticipantRow, SessionRow
 from study.design.definition import StudyDefinition, parse_definition
 
@@ -150,7 +151,12 @@ def test_a_personal_link_opens_one_session_on_any_device(site: Any, guest: Any) 
         one.client.close()
 
 
-def test_a_link_that_nobody_made_says_so(guest: Any) -> None:
+def test_a_link_that_nobody_made_for_this_study_says_so(site: Any, guest: Any) -> None:
+    other = parse_definition(
+        json.loads(site.study.definition.to_json()) | {"key": "other", "recruiting": None}
+    )
+    [link] = links.make(site.db, studies.register(site.db, other), 1)
+    assert guest.get(f"/link/{link.token}").status_code == 404
     page = guest.get("/link/abcdef")
     assert page.status_code == 404
     assert "No study here knows this personal link" in page.text

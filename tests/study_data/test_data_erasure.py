@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -94,7 +95,7 @@ def test_no_export_shows_who_withdrew(
 def test_nothing_is_stored_about_somebody_who_withdrew(db: Database, walk: Any) -> None:
     walk.begin()
     erasure.withdraw(db, walk.participant)
-    attempts = [
+    attempts: list[Callable[[], object]] = [
         lambda: events.record(db, walk.participant, key="x", kind="problem"),
         lambda: answers.store(db, walk.participant, 1, {}, key="x"),
         lambda: progress.give_consent(db, walk.participant, key="x"),
