@@ -6,13 +6,11 @@ lashes and hair; then tone curve and 8 bits.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final
 
 import moderngl
 
-from renderer.camera import IRIS_PX, CameraUniforms, View, radius_of_px, views
+from renderer.camera import IRIS_PX, View, radius_of_px, views
 from renderer.clip import ClipSpec
 from renderer.crowd.cube import CrowdCube
 from renderer.eye.cube_size import cube_px
@@ -21,9 +19,7 @@ from renderer.eye.model import EyeModel
 from renderer.lod.path import Places, details_of, places_of_clip, places_of_view, shares_of
 from renderer.picture import SAMPLES, Picture, Pixels, Radiance
 from renderer.scene import Scene, build_scene, scene_key
-
-# What a view is drawn by, in this order: what lets something through lies over what does not.
-PASSES: Final = ("head", "eyes", "tears", "bystanders", "background", "hair")
+from renderer.view_passes import PASSES, ViewPasses
 
 
 @dataclass(frozen=True)
@@ -55,7 +51,6 @@ class FrameRenderer:
         self.gl = gl
         self.spec = spec
         self.wireframe = wireframe
-        self._passes = PASSES[: PASSES.index(until) + 1]
         self._drawn_eyes = eyes
         if scene is None or scene.key != scene_key(spec):
             scene = build_scene(gl, spec, last=scene)
@@ -73,6 +68,7 @@ class FrameRenderer:
             crowd_cube=self._crowd_cube.texture if self._crowd_cube else None,
             kept=scene.kept,
         )
+        self._passes = ViewPasses(gl, scene, self._eyes, is_approach=self._is_approach, until=until)
         in_picture = len(views(spec, 0.0, eyes=eyes))
         self._picture = Picture(gl, (spec.width, spec.height), views=in_picture)
 
@@ -175,7 +171,7 @@ class FrameRenderer:
         queries: dict[int, moderngl.Query] = {}
         for view in shown:
             self._picture.use_rectangle(view.rectangle)
-            queries |= self._draw_view(view, time_s)
+            queries |= self._passes.draw(view, time_s, wireframe=self.wireframe)
         return queries
 
     @property
@@ -190,49 +186,3 @@ class FrameRenderer:
             if detail.setting("reflection", "mode") == "dynamic"
         ]
         return self.scene.crowd_cube(self.gl, max(sizes)) if sizes else None
-
-    def _draw_view(self, view: View, time_s: float) -> dict[int, moderngl.Query]:
-        camera = view.uniforms
-        scene = self.scene
-        queries: dict[int, moderngl.Query] = {}
-        # Meshes that change with the distance would change the face amid an approach.
-        scene.head.is_close = True if self._is_approach else None
-        passes: dict[str, Callable[[], None]] = {
-            "head": lambda: scene.head.draw(**camera, light=scene.light),
-            "eyes": lambda: queries.update(self._draw_eyes(view)),
-            "tears": lambda: self._draw_tears(view),
-            "bystanders": lambda: scene.crowd.draw(**camera, time_s=time_s),
-            "background": lambda: scene.surroundings.draw_background(
-                view_matrix=view.view_matrix,
-                projection=view.projection,
-                is_smooth=self._is_approach,
-            ),
-            "hair": lambda: scene.head.draw_hair(**camera, light=scene.light),
-        }
-        for name in self._passes:
-            passes[name]()
-        return queries
-
-    def _draw_eyes(self, view: View) -> dict[int, moderngl.Query]:
-        self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        return {eye: self._draw_eye(eye, view.uniforms) for eye in view.eyes}
-
-    def _draw_tears(self, view: View) -> None:
-        head, light = self.scene.head, self.scene.light
-        for eye in view.eyes:
-            wet = sum(
-                share
-                for detail, share in self._eyes.shares(eye)
-                if detail.reflection in {"high", "ultra"}
-            )
-            if wet > 0.0:
-                head.draw_tears(eye, **view.uniforms, light=light, share=wet)
-
-    def _draw_eye(self, eye: int, camera: CameraUniforms) -> moderngl.Query:
-        self._eyes.shade(eye, **camera)  # outside the query: it counts what is seen
-        query = self.gl.query(samples=True)
-        self.gl.wireframe = self.wireframe
-        with query:
-            self._eyes.draw(eye, **camera)
-        self.gl.wireframe = False
-        return query

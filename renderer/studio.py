@@ -6,9 +6,10 @@ from collections.abc import Iterator, Sequence
 
 from renderer.clip import ClipSpec
 from renderer.context import create_context, identify
-from renderer.frame import PASSES, Frame, FrameRenderer
+from renderer.frame import Frame, FrameRenderer
 from renderer.group import GroupRenderer
 from renderer.scene import Scene, scene_key
+from renderer.view_passes import PASSES
 
 
 class Studio:

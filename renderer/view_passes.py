@@ -1,0 +1,83 @@
+"""The passes that draw one view of a frame, in their order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import moderngl
+
+from renderer.camera import CameraUniforms, View
+from renderer.eye.eyes import Eyes
+from renderer.scene import Scene
+
+# What a view is drawn by, in this order: what lets something through lies over what does not.
+PASSES: Final = ("head", "eyes", "tears", "bystanders", "background", "hair")
+
+
+class ViewPasses:
+    """Draw views of a scene with a clip's eyes, as far as the pass named ``until``.
+
+    In an approach (``is_approach``) nothing may change in steps with the camera's distance.
+    """
+
+    def __init__(
+        self, gl: moderngl.Context, scene: Scene, eyes: Eyes, *, is_approach: bool, until: str
+    ) -> None:
+        self._gl = gl
+        self._scene = scene
+        self._eyes = eyes
+        self._is_approach = is_approach
+        self._names = PASSES[: PASSES.index(until) + 1]
+
+    def draw(
+        self, view: View, time_s: float, *, wireframe: bool = False
+    ) -> dict[int, moderngl.Query]:
+        """Draw a view into the current target and return what counts each eye's visible samples.
+
+        ``wireframe`` draws the eyes as their triangles' edges.
+        """
+        camera = view.uniforms
+        scene = self._scene
+        queries: dict[int, moderngl.Query] = {}
+        # Meshes that change with the distance would change the face amid an approach.
+        scene.head.is_close = True if self._is_approach else None
+        passes: dict[str, Callable[[], None]] = {
+            "head": lambda: scene.head.draw(**camera, light=scene.light),
+            "eyes": lambda: queries.update(self._draw_eyes(view, wireframe)),
+            "tears": lambda: self._draw_tears(view),
+            "bystanders": lambda: scene.crowd.draw(**camera, time_s=time_s),
+            "background": lambda: scene.surroundings.draw_background(
+                view_matrix=view.view_matrix,
+                projection=view.projection,
+                is_smooth=self._is_approach,
+            ),
+            "hair": lambda: scene.head.draw_hair(**camera, light=scene.light),
+        }
+        for name in self._names:
+            passes[name]()
+        return queries
+
+    def _draw_eyes(self, view: View, wireframe: bool) -> dict[int, moderngl.Query]:
+        self._gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        return {eye: self._draw_eye(eye, view.uniforms, wireframe) for eye in view.eyes}
+
+    def _draw_tears(self, view: View) -> None:
+        head, light = self._scene.head, self._scene.light
+        for eye in view.eyes:
+            wet = sum(
+                share
+                for detail, share in self._eyes.shares(eye)
+                if detail.reflection in {"high", "ultra"}
+            )
+            if wet > 0.0:
+                head.draw_tears(eye, **view.uniforms, light=light, share=wet)
+
+    def _draw_eye(self, eye: int, camera: CameraUniforms, wireframe: bool) -> moderngl.Query:
+        self._eyes.shade(eye, **camera)  # outside the query: it counts what is seen
+        query = self._gl.query(samples=True)
+        self._gl.wireframe = wireframe
+        with query:
+            self._eyes.draw(eye, **camera)
+        self._gl.wireframe = False
+        return query
