@@ -1,9 +1,9 @@
-"""The head's meshes on the GPU: one vertex buffer, index ranges in cells that a view may skip."""
+"""The head's meshes and tiles on the GPU: vertices in one buffer, triangles in cells."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Final
 
 import moderngl
@@ -12,79 +12,11 @@ import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.camera import Matrix
+from renderer.head.cells import Cells, sort_into_cells
 from renderer.program import Program
 
-CELL_MM: Final = 12.0
 STATIC: Final = ("3f 3f 3f 4f 1f", ["in_position", "in_normal", "in_albedo", "in_detail", "in_lid"])
 LIT: Final = ("3f 4f", ["in_diffuse", "in_surface"])
-
-
-@dataclass(frozen=True)
-class Cells:
-    """Runs of triangles: ``first`` and ``count`` in indices, bounding spheres in mm.
-
-    ``facing`` (n, 3) is the mean normal, ``spread`` (n,) the sine of the largest angle from it.
-    """
-
-    first: Indices
-    count: Indices
-    centre_mm: Floats
-    radius_mm: Floats
-    facing: Floats
-    spread: Floats
-
-    def visible(self, clip: Floats, camera_mm: Floats | None = None) -> list[tuple[int, int]]:
-        """Return the runs (first, count) that a view can show, neighbours merged.
-
-        Cells outside the frustum are left out; with a camera, so are those that face away.
-        """
-        inside = (frustum_distance(clip, self.centre_mm) > -self.radius_mm[:, None]).all(axis=1)
-        if camera_mm is not None:
-            to_camera = camera_mm - self.centre_mm
-            distance = np.linalg.norm(to_camera, axis=1)
-            slack = self.spread + self.radius_mm / np.maximum(distance, self.radius_mm)
-            inside &= (to_camera * self.facing).sum(axis=1) > -slack * distance
-        runs: list[tuple[int, int]] = []
-        for first, count in zip(self.first[inside], self.count[inside], strict=True):
-            if runs and sum(runs[-1]) == first:
-                runs[-1] = (runs[-1][0], runs[-1][1] + int(count))
-            else:
-                runs.append((int(first), int(count)))
-        return runs
-
-
-def frustum_distance(clip: Floats, points_mm: Floats) -> Floats:
-    """Return signed distances (n, 6) in mm of points from a frustum's planes, positive inside."""
-    planes = np.concatenate([clip[3] + clip[:3], clip[3] - clip[:3]]).reshape(6, 4)
-    planes = planes / np.linalg.norm(planes[:, :3], axis=1, keepdims=True)
-    return np.asarray(points_mm @ planes[:, :3].T + planes[:, 3])
-
-
-def sort_into_cells(points: Floats, triangles: Indices) -> tuple[Indices, Cells]:
-    """Return the triangles ordered by cubes of CELL_MM, and the cubes' runs."""
-    centres = points[triangles].mean(axis=1)
-    _, cell = np.unique(np.floor(centres / CELL_MM).astype(int), axis=0, return_inverse=True)
-    order = np.argsort(cell.ravel(), kind="stable")
-    ordered, cell = triangles[order], cell.ravel()[order]
-    starts = np.flatnonzero(np.diff(cell, prepend=-1))
-    counts = np.diff(np.append(starts, len(ordered)))
-    faces = np.cross(
-        points[ordered[:, 1]] - points[ordered[:, 0]], points[ordered[:, 2]] - points[ordered[:, 0]]
-    )
-    faces /= np.maximum(np.linalg.norm(faces, axis=1, keepdims=True), 1e-12)
-    middles, radii, facing, spread = [], [], [], []
-    for start, count in zip(starts, counts, strict=True):
-        corners = points[ordered[start : start + count].ravel()]
-        middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
-        middles.append(middle)
-        radii.append(np.linalg.norm(corners - middle, axis=1).max())
-        mean = faces[start : start + count].mean(axis=0)
-        mean /= max(float(np.linalg.norm(mean)), 1e-9)
-        cosine = float((faces[start : start + count] @ mean).min())
-        facing.append(mean)
-        spread.append(np.sqrt(1 - min(cosine, 1.0) ** 2) if cosine > 0 else 2.0)
-    spheres = (np.array(middles), np.array(radii), np.array(facing), np.array(spread))
-    return ordered, Cells(starts * 3, counts * 3, *spheres)
 
 
 class CellMesh:
@@ -94,20 +26,34 @@ class CellMesh:
     """
 
     def __init__(
-        self, gl: moderngl.Context, rows: Floats, triangles: Indices, *, turn: int | None = None
+        self,
+        gl: moderngl.Context,
+        rows: Floats,
+        triangles: Indices,
+        *,
+        turn: int | None = None,
+        kinds: Indices | None = None,
     ) -> None:
         """``rows`` (n, 14) are what STATIC names, of all the vertices that ``triangles`` count.
 
-        ``turn`` numbers a column that runs once around from 0 to 1, if there is one.
+        ``turn`` numbers a column that runs once around from 0 to 1, if there is one. ``kinds`` (m,)
+        numbers the program from 0 that draws each triangle; without them all have the first.
         """
+        kinds = np.zeros(len(triangles), dtype=np.int64) if kinds is None else kinds
         source = np.arange(len(rows))
         if turn is not None:
             source, triangles = unroll(rows[:, turn], triangles)
             on = np.arange(len(source)) >= len(rows)
             rows = rows[source]
             rows[on, turn] += 1.0
-        ordered, self.cells = sort_into_cells(rows[:, :3], triangles)
-        used, numbers = _by_first_use(ordered)
+        self._cells: list[tuple[int, Cells]] = []
+        parts, first = [triangles[:0]], 0
+        for kind in np.unique(kinds).tolist():
+            part, cells = sort_into_cells(rows[:, :3], triangles[kinds == kind])
+            self._cells.append((kind, replace(cells, first=cells.first + first)))
+            parts.append(part)
+            first += part.size
+        used, numbers = _by_first_use(np.concatenate(parts))
         self._used = source[used]
         self._gl = gl
         self._index = gl.buffer(numbers.astype(np.int32).tobytes())
@@ -120,12 +66,22 @@ class CellMesh:
         self._light.write(rows[self._used].astype(np.float32).tobytes())
 
     def draw(
-        self, program: Program, clip: Matrix | Floats, *, camera_mm: Floats | None = None
+        self,
+        program: Program,
+        clip: Matrix | Floats,
+        *,
+        camera_mm: Floats | None = None,
+        kind: int | None = None,
     ) -> None:
-        """Draw the cells that a world-to-clip matrix can show, with a camera only its fronts."""
+        """Draw the cells that a world-to-clip matrix can show, with a camera only its fronts.
+
+        ``kind`` narrows it to triangles of that kind.
+        """
         array = self._array(program)
-        for first, count in self.cells.visible(np.asarray(clip, dtype=float), camera_mm):
-            array.render(vertices=count, first=first)
+        for number, cells in self._cells:
+            if kind is None or number == kind:
+                for first, count in cells.visible(np.asarray(clip, dtype=float), camera_mm):
+                    array.render(vertices=count, first=first)
 
     def _array(self, program: Program) -> moderngl.VertexArray:
         key = program.gl_program.glo

@@ -6,38 +6,32 @@ light, and a frame only projects and textures it.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any, Final
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.body.makehuman import Floats
 from renderer.camera import Matrix, eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.eye.lids import LidRims
-from renderer.head.brows import grow_brow
 from renderer.head.buffers import CellMesh, TilePyramid
 from renderer.head.clothing import knit_tile
-from renderer.head.face_mesh import FaceMesh, face_mesh, to_world
+from renderer.head.face_mesh import face_mesh
 from renderer.head.fornix import Fornix
-from renderer.head.hair import grow_hair, hair_cap
-from renderer.head.lashes import grow_lashes
+from renderer.head.growing import grow_all_hair
 from renderer.head.lid_pose import lid_poses
 from renderer.head.lid_rims import lid_rims
 from renderer.head.light import light_strands, light_surfaces, open_sky
 from renderer.head.skin_maps import SkinMaps
-from renderer.head.strands import StrandMesh, blending
-from renderer.head.surfaces import cap_surface, cloth_surface, skin_surfaces
+from renderer.head.strands import blending, strand_programs
+from renderer.head.surfaces import SKIN_KINDS, cap_surface, cloth_surface, skin_surfaces
 from renderer.head.tears import TearLine
 from renderer.light import Light
 from renderer.program import build_program
 
 CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
-FACE_HAIR_BIAS_MM: Final = 1.2  # hairs nearer than this to a surface are not in its shadow
-SCALP_HAIR_BIAS_MM: Final = 5.0
-HEAD_MIDDLE_MM: Final = (0.0, 10.0, -85.0)
-HAIR_SEED: Final = 20
 KNIT_PX_PER_MM: Final = 60.0  # of the knit's tile; more than it has: wool looks soft, not sharp
 
 
@@ -50,12 +44,15 @@ class Head:
         poses = lid_poses(spec)
         self.rims: tuple[LidRims, LidRims] = (lid_rims(0, poses[0]), lid_rims(1, poses[1]))
         self._programs = {
-            "skin": build_program(gl, "skin.vert", fragment="skin.frag"),
             "fabric": build_program(gl, "skin.vert", fragment="fabric.frag"),
-            "hair": build_program(gl, "hair.vert", fragment="hair.frag"),
             "depth": build_program(gl, "depth.vert", fragment="depth.frag"),
             "tears": build_program(gl, "tears.vert", fragment="tears.frag"),
         }
+        self._skin_programs = [
+            build_program(gl, "skin.vert", fragment="skin.frag", constants=constants)
+            for constants in SKIN_KINDS
+        ]
+        self._strand_programs = strand_programs(gl)
         self._fornix = Fornix(gl)
         self._skin_maps = SkinMaps(gl, face_mesh())
         self._knit = TilePyramid(gl, knit_tile())
@@ -70,7 +67,7 @@ class Head:
         self._open_sky = open_sky(
             gl, self._surfaces, whole=self.draw_depth, without_lids=self._draw_depth_without_lids
         )
-        self._hair = _grow_hair(gl, self._face)
+        self._hair = grow_all_hair(gl, self._face)
         self._tears = [
             TearLine(gl, self._programs["tears"], self._face.lids[eye], eye=eye) for eye in (0, 1)
         ]
@@ -94,12 +91,10 @@ class Head:
             **light.uniforms(),
         }
         clip = projection @ view_matrix
-        skin, fabric = self._programs["skin"], self._programs["fabric"]
-        skin.set(**view, **self._skin_maps.uniforms(density))
-        close = self._is_close_to(distance)
-        for mesh in [*(self._close if close else self._distant), self._mesh("cap")]:
-            mesh.draw(skin, clip, camera_mm=camera)
+        meshes = self._close if self._is_close_to(distance) else self._distant
+        self._draw_skin([*meshes, self._mesh("cap")], view, clip, camera_mm=camera)
         self._fornix.draw(clip, light.sky)
+        fabric = self._programs["fabric"]
         fabric.set(**view, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
         self.gl.disable(moderngl.CULL_FACE)  # the roll neck shows its inside
         self._mesh("cloth").draw(fabric, clip)
@@ -112,29 +107,38 @@ class Head:
         It follows ``draw`` of the same view.
         """
         self._use_light(light)
-        program = self._programs["hair"]
         pixel_per_mm = self._pixel_per_mm(projection)
-        program.set(
-            u_view_matrix=view_matrix,
-            u_projection=projection,
-            u_camera_mm=camera_mm,
-            u_pixel_per_mm=pixel_per_mm,
-            u_pixel_mm=float(np.linalg.norm(np.asarray(camera_mm))) / pixel_per_mm,
+        view = {
+            "u_view_matrix": view_matrix,
+            "u_projection": projection,
+            "u_camera_mm": camera_mm,
             **light.uniforms(),
-        )
+        }
+        for program in self._strand_programs.values():
+            program.set(
+                **view,
+                u_pixel_per_mm=pixel_per_mm,
+                u_pixel_mm=float(np.linalg.norm(np.asarray(camera_mm))) / pixel_per_mm,
+            )
         clip = projection @ view_matrix
         camera = np.asarray(camera_mm, dtype=float)
         # Conjunctiva fades into the sclera beneath, sample by sample: its solid part stands there
         # already, and the samples of an edge between the two belong to the one or the other.
-        skin = self._programs["skin"]
-        density = pixel_per_mm / float(np.linalg.norm(camera))
-        skin.set(**self._skin_maps.uniforms(density))  # others' textures took their units
         with blending(self.gl, by_sample=True):
-            for veil in self._veils:
-                veil.draw(skin, clip, camera_mm=camera)
+            self._draw_skin(self._veils, view, clip, camera_mm=camera)
         with blending(self.gl):
             for mesh, _ in self._hair:
-                mesh.draw(program, clip, camera_mm=camera)
+                mesh.draw(self._strand_programs[mesh.kind], clip, camera_mm=camera)
+
+    def _draw_skin(
+        self, meshes: list[CellMesh], view: dict[str, Any], clip: Matrix, *, camera_mm: Floats
+    ) -> None:
+        """Draw meshes of skin kind by kind: each kind's program puts textures where it wants."""
+        pixels_per_mm = self._pixel_per_mm(view["u_projection"]) / float(np.linalg.norm(camera_mm))
+        for kind, program in enumerate(self._skin_programs):
+            program.set(**view, **self._skin_maps.uniforms(pixels_per_mm))
+            for mesh in meshes:
+                mesh.draw(program, clip, camera_mm=camera_mm, kind=kind)
 
     def draw_tears(
         self,
@@ -192,20 +196,3 @@ class Head:
             light_surfaces(self._surfaces, light, self._open_sky, face=self._face)
             light_strands(self._hair, light)
             self._lit_by = light
-
-
-def _grow_hair(gl: moderngl.Context, face: FaceMesh) -> list[tuple[StrandMesh, float]]:
-    """Grow lashes, brows and hair, each with its shadow bias in mm.
-
-    Both sides obey the same laws; hair by hair they differ.
-    """
-    meshes: list[tuple[StrandMesh, float]] = []
-    for eye in (0, 1):
-        rng = np.random.Generator(np.random.PCG64(HAIR_SEED + eye))
-        for strands in (*grow_lashes(face.lids[eye], rng), grow_brow(face.sockets[eye], rng)):
-            placed = replace(strands, points_mm=to_world(strands.points_mm, eye))
-            meshes.append((StrandMesh(gl, placed, rng), FACE_HAIR_BIAS_MM))
-    rng = np.random.Generator(np.random.PCG64(HAIR_SEED + 2))
-    scalp_hair = StrandMesh(gl, grow_hair(hair_cap(face), rng), rng, around_mm=HEAD_MIDDLE_MM)
-    meshes.append((scalp_hair, SCALP_HAIR_BIAS_MM))
-    return meshes

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.camera import Matrix
-from renderer.head.buffers import sort_into_cells
+from renderer.head.cells import sort_into_cells
 from renderer.head.strand_group import Strands
-from renderer.program import Program
+from renderer.program import Program, build_program
 
 SILHOUETTE: Final = 0.3  # sine of how far beyond the horizon of its body hair may still be seen
 LAYOUT = ("3f 3f 4f 4f", ["in_position", "in_tangent", "in_ribbon", "in_colour"])
@@ -29,6 +29,20 @@ ALPHA_KEEPING_TARGET: Final[Any] = (  # moderngl's stub knows only the pair
 LEAST_PX: Final = 0.25  # hairs that would cover less of a pixel are thinned out
 LEAST_LOCK_PX: Final = 1.0
 LOCK: Final = 8  # hairs of the scalp that one ribbon stands for
+# Each kind has a program of its own: software GL would compute every side of an if.
+KINDS: Final = {
+    "hair": {"LOCK": 1, "MARK": 0},
+    "lock": {"LOCK": LOCK, "MARK": 0},
+    "mark": {"LOCK": 1, "MARK": 1},
+}
+
+
+def strand_programs(gl: moderngl.Context) -> dict[str, Program]:
+    """Return what draws each kind of strand: single hairs, locks, and marks on the skin."""
+    return {
+        kind: build_program(gl, "hair.vert", fragment="hair.frag", constants=constants)
+        for kind, constants in KINDS.items()
+    }
 
 
 @contextmanager
@@ -68,6 +82,7 @@ class StrandMesh:
 
         ``around_mm``: the middle of an opaque body that hides hair on its far side, if any.
         """
+        self.kind = "mark" if strands.shadow is not None else "lock" if around_mm else "hair"
         rows, triangles = ribbons(strands, rng)
         triangles, self._cells = sort_into_cells(rows[:, :3], triangles)
         self._hides = around_mm is not None
@@ -91,7 +106,7 @@ class StrandMesh:
         self._sun.write(both_sides.tobytes())
 
     def draw(self, program: Program, clip: Matrix, *, camera_mm: Floats) -> None:
-        """Draw the ribbons that a view can show; a mesh belongs to one program."""
+        """Draw the ribbons that a view can show with the program of their kind, always the same."""
         if self._array is None:
             self._array = self._gl.vertex_array(
                 program.gl_program,
@@ -100,7 +115,6 @@ class StrandMesh:
             )
         camera = camera_mm if self._hides else None
         program.set(
-            u_strands=LOCK if self._hides else 1,
             u_middle_mm=self._middle_mm,
             u_least_px=LEAST_LOCK_PX if self._hides else LEAST_PX,
         )

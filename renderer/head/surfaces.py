@@ -13,18 +13,23 @@ from renderer.head.buffers import CellMesh
 from renderer.head.character import figure
 from renderer.head.clothing import COLOUR as WOOL_COLOUR
 from renderer.head.clothing import sweater
-from renderer.head.face_mesh import FaceMesh, SkinPart, face_mesh, triangles_of
+from renderer.head.face_mesh import FaceMesh, SkinPart, face_mesh
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import hair_cap
-from renderer.head.lid_fit import ALONG, AROUND, grid_quads
 from renderer.head.lid_layout import ACROSS_MM, AROUND_MM, lid_coordinates
 from renderer.head.skin import SCALP, detail_coordinates, paint
+from renderer.head.thinned import distant_patch, near_corners, near_patch
 
-SPARSE_ROW: Final = 29  # of the lid patches: from here on, every other column will do
 GRAIN_SCALE: Final = 2.2  # the caruncle's granules are so much finer than the cheek's polygons
 VESSELS_AT: Final = (-0.7, 0.3)  # in the lids' map, a turn early: on the upper lid
 VESSELS_SCALE: Final = 1.7  # ... and so much finer than they lie there
 AROUND_COLUMN: Final = 11  # of the rows: the way around the fissure in the lids' map
+# Constants of the programs that shade skin away from the lids, dry lids, and what tears wet.
+SKIN_KINDS: Final = (
+    {"LIDS": 0, "WET": 0},
+    {"LIDS": 1, "WET": 0},
+    {"LIDS": 1, "WET": 1},
+)
 
 
 @dataclass
@@ -66,23 +71,39 @@ def skin_surfaces(gl: moderngl.Context, face: FaceMesh) -> dict[str, Surface]:
         albedo, gloss = paint(part)
         lid = int(name[-1]) if name.startswith("patch") else None
         rows = _skin_rows(part, albedo, lid)
-        solid, sheer = _by_cover(part) if name.startswith("corner") else (part.triangles, None)
+        solid, sheer = (part.triangles, None)
+        if name.startswith("corner"):
+            solid, sheer = _by_cover(part, near_corners(int(name[-1])))
         surfaces[name] = Surface(
             part.points_mm,
             part.normals,
             part.triangles,
             gloss,
             part.wet if part.grain is None else 1.0 - 0.5 * part.grain,
-            CellMesh(
-                gl,
-                rows,
-                solid if lid is None else _near_patch(lid),
-                turn=None if lid is None else AROUND_COLUMN,
-            ),
-            None if lid is None else CellMesh(gl, rows, _thinned_patch(lid), turn=AROUND_COLUMN),
-            None if sheer is None else CellMesh(gl, rows, sheer),
+            _mesh(gl, part, rows, solid if lid is None else near_patch(lid), lid=lid),
+            None if lid is None else _mesh(gl, part, rows, distant_patch(lid), lid=lid),
+            None if sheer is None else _mesh(gl, part, rows, sheer),
         )
     return surfaces
+
+
+def _mesh(
+    gl: moderngl.Context,
+    part: SkinPart,
+    rows: Floats,
+    triangles: Indices,
+    *,
+    lid: int | None = None,
+) -> CellMesh:
+    turn = None if lid is None else AROUND_COLUMN
+    return CellMesh(gl, rows, triangles, turn=turn, kinds=skin_kinds(part, triangles))
+
+
+def skin_kinds(part: SkinPart, triangles: Indices) -> Indices:
+    """Return for each triangle (m,) which of SKIN_KINDS shades it: the least that will do."""
+    is_wet = (part.wet > 0.0) | (part.grain is not None)
+    kind = np.where(is_wet, 2, np.where(part.lid > 0.0, 1, 0))
+    return np.asarray(kind[triangles].max(axis=1))
 
 
 def cloth_surface(gl: moderngl.Context) -> Surface:
@@ -127,34 +148,10 @@ def _skin_rows(part: SkinPart, albedo: Floats, eye: int | None) -> Floats:
     return np.column_stack([sunk, part.normals, albedo, detail, lid, part.lid])
 
 
-def _by_cover(part: SkinPart) -> tuple[Indices, Indices]:
+def _by_cover(part: SkinPart, triangles: Indices) -> tuple[Indices, Indices | None]:
     """Return the triangles that hide what is behind, and all that are to be seen.
 
     The second go over the first: no sample stays empty where both kinds meet.
     """
-    cover = part.lid[part.triangles]
-    return part.triangles[cover.min(axis=1) > 0.999], part.triangles[cover.max(axis=1) > 0.001]
-
-
-def _near_patch(eye: int) -> Indices:
-    """Return a patch's triangles for close views: full near the rims, half the columns beyond."""
-    inner = grid_quads(AROUND, SPARSE_ROW + 1)
-    column, row = inner // (SPARSE_ROW + 1), inner % (SPARSE_ROW + 1)
-    triangles = [triangles_of(column * ALONG + row)]
-    outer = grid_quads(AROUND // 2, ALONG - SPARSE_ROW)
-    column, row = outer // (ALONG - SPARSE_ROW), outer % (ALONG - SPARSE_ROW)
-    triangles.append(triangles_of(2 * column * ALONG + row + SPARSE_ROW))
-    # Where two columns become one, the first sparse row leans over the middle column.
-    first, second, third = ((np.arange(0, AROUND, 2) + k) % AROUND * ALONG for k in range(3))
-    triangles.append(np.column_stack([first, third, second]) + SPARSE_ROW)
-    both = np.concatenate(triangles)
-    return np.asarray(both[:, ::-1] if eye == 0 else both)
-
-
-def _thinned_patch(eye: int) -> Indices:
-    """Return triangles that skip three of four rings' points: for views from further away."""
-    around, along = np.arange(0, AROUND, 4), np.append(np.arange(0, ALONG - 1, 3), ALONG - 1)
-    quads = grid_quads(len(around), len(along))
-    number = (around[:, None] * ALONG + along[None, :]).ravel()
-    triangles = number[triangles_of(quads)]
-    return np.asarray(triangles[:, ::-1] if eye == 0 else triangles)
+    cover = part.lid[triangles]
+    return triangles[cover.min(axis=1) > 0.999], triangles[cover.max(axis=1) > 0.001]

@@ -1,13 +1,11 @@
 // Provides: one hair, a lock whose hairs lie side by side, or the soft mark at a hair's root.
 // Alpha is the share of the pixel that it covers: exact for a straight edge, so the same hair is
-// as dark at every distance.
+// as dark at every distance. LOCK: hairs that a ribbon stands for; MARK: 1 where it is a mark.
 
 in vec3 v_body;
 in vec3 v_glint;
 in vec4 v_ribbon;     // way across in px, half width in px, place along, thinning number
 in float v_shadow;
-
-uniform int u_strands;
 
 out vec4 out_radiance;
 
@@ -19,7 +17,7 @@ float covered(float at, float half_px) {
 
 // A lock's hairs lie side by side, of different tone; each begins and ends at its own place.
 vec2 lock(float at, float half_px, float along, float number) {
-    float strands = float(u_strands);
+    float strands = float(LOCK);
     float across = (0.5 + 0.5 * at / half_px) * strands + 0.4 * sin(5.0 * along + 40.0 * number);
     float hair = floor(across);
     float hair_px = 2.0 * half_px / strands, seen = clamp(hair_px - 0.6, 0.0, 1.0);
@@ -32,23 +30,27 @@ vec2 lock(float at, float half_px, float along, float number) {
     return vec2(mix(2.0 * thin, one, seen), tone);
 }
 
-void main() {
-    float at = v_ribbon.x, half_px = v_ribbon.y;
+vec4 mark(float at, float half_px) {
+    float x = clamp(at / max(half_px, 0.5), -1.0, 1.0), middle = 1.0 - x * x;
+    float fade = v_ribbon.z * (1.0 - v_ribbon.z) * (1.0 - v_ribbon.z);
+    return vec4(v_body, 6.75 * v_shadow * middle * middle * fade);
+}
+
+vec4 hair(float at, float half_px) {
     float alpha = covered(at, half_px) * smoothstep(0.0, 0.04, v_ribbon.z);  // it leaves the skin softly
     float x = clamp(at / max(half_px, 0.5), -1.0, 1.0);
     float round_px = clamp(half_px - 0.5, 0.0, 1.0);
     // A cylinder: the glints run along its middle, thinner sides let light through.
     float middle = 1.0 - x * x;
     vec3 radiance = v_body * mix(1.0, 1.25 - 0.375 * middle, round_px) + v_glint * mix(1.0, 1.5 * middle, round_px);
-    if (u_strands > 1) {
-        vec2 hair = lock(at, max(half_px, 1e-3), v_ribbon.z, v_ribbon.w);
-        alpha *= hair.x;
-        radiance *= 0.55 + 0.9 * hair.y;
+    if (LOCK > 1) {
+        vec2 one = lock(at, max(half_px, 1e-3), v_ribbon.z, v_ribbon.w);
+        alpha *= one.x;
+        radiance *= 0.55 + 0.9 * one.y;
     }
-    if (v_shadow > 0.0) {
-        float fade = v_ribbon.z * (1.0 - v_ribbon.z) * (1.0 - v_ribbon.z);
-        alpha = 6.75 * v_shadow * middle * middle * fade;
-        radiance = v_body;
-    }
-    out_radiance = vec4(radiance, alpha);
+    return vec4(radiance, alpha);
+}
+
+void main() {
+    out_radiance = MARK == 1 ? mark(v_ribbon.x, v_ribbon.y) : hair(v_ribbon.x, v_ribbon.y);
 }

@@ -1,7 +1,7 @@
 // Provides: ribbons of hair that face the camera. hair.frag gives each its true width as coverage, so
 // that hairs thinner than a pixel neither break nor swell; where they are much thinner, hairs are
 // left out by their number and the others stand for them. Lit here, not per pixel: hairs cover few
-// pixels each, but the rasteriser visits many for them.
+// pixels each, but the rasteriser visits many for them. LOCK and MARK as in hair.frag.
 
 #include "light.glsl"
 #include "fibre.glsl"
@@ -18,7 +18,6 @@ uniform vec3 u_camera_mm;
 uniform float u_pixel_per_mm;   // at 1 mm distance
 uniform float u_pixel_mm;       // a pixel at the head, the same for all hairs: thinning is steady
 uniform float u_least_px;       // thinner hairs are thinned out
-uniform int u_strands;          // hairs that a ribbon stands for: 1, or more for a lock
 uniform vec3 u_middle_mm;       // of the body that locks lie flat on
 
 out vec3 v_body;
@@ -32,7 +31,7 @@ const float SHADOW_LIFT_MM = 0.5;
 // A hair swells where it leaves the skin and narrows to a point; a lock thins out strand by strand.
 float taper(float along) {
     float root = 0.6 + 0.4 * smoothstep(0.0, 0.08, along);
-    return u_strands > 1 ? 1.0 - 0.35 * along * along : root * (1.0 - along * along);
+    return LOCK > 1 ? 1.0 - 0.35 * along * along : root * (1.0 - along * along);
 }
 
 void main() {
@@ -40,7 +39,7 @@ void main() {
     float distance_mm = length(to_camera);
     vec3 v = to_camera / distance_mm;
     // A hair is as wide from every side; a lock lies flat and is thin at the head's outline.
-    vec3 across = cross(in_tangent, u_strands > 1 ? in_position - u_middle_mm : v);
+    vec3 across = cross(in_tangent, LOCK > 1 ? in_position - u_middle_mm : v);
     across /= max(length(across), 1e-4);
     float shown = max(length(across - v * dot(across, v)), 0.25);
     float pixel_mm = distance_mm / u_pixel_per_mm;
@@ -51,11 +50,11 @@ void main() {
     float reach_mm = (half_px + MARGIN_PX / shown) * pixel_mm;
     half_px *= shown;
     // A lock seen end-on would be a blot.
-    if (u_strands > 1) half_px *= smoothstep(0.02, 0.2, length(cross(in_tangent, v)));
+    if (LOCK > 1) half_px *= smoothstep(0.02, 0.2, length(cross(in_tangent, v)));
     v_ribbon = vec4(in_ribbon.x * (half_px + MARGIN_PX), half_px, in_ribbon.z, in_ribbon.w);
     bool is_drawn = in_ribbon.w <= kept;
     // Software GL computes both sides of an if, but skips a loop that no vertex of a block enters.
-    bool is_black = in_colour.a > 0.0 && in_colour.r == 0.0;   // a shadow
+    bool is_black = MARK == 1 && in_colour.r == 0.0;   // a shadow
     int lit = is_drawn && !is_black ? 1 : 0;
     FibreLight light = FibreLight(vec3(0.0), vec3(0.0));
     for (int i = 0; i < lit; ++i)
@@ -64,6 +63,6 @@ void main() {
     v_glint = light.glint;
 
     vec3 p_world = in_position + across * (in_ribbon.x * reach_mm);
-    p_world += v * (in_colour.a > 0.0 ? SHADOW_LIFT_MM : 0.0);
+    if (MARK == 1) p_world += v * SHADOW_LIFT_MM;
     gl_Position = is_drawn ? u_projection * u_view_matrix * vec4(p_world, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -1,5 +1,6 @@
 // Provides: skin. Baked scattered light times paint; relief from the face's tile and the lids' own
 // map, blood and melanin from a third picture; two oily lobes that the relief breaks up.
+// LIDS 0: no lids near, their map is not read. WET 0: no tears either, and nothing lets light through.
 
 #include "light.glsl"
 #include "specular.glsl"
@@ -43,27 +44,29 @@ float wet_lobe(vec3 n, vec3 h, float grain) {
 void main() {
     // Samples at a silhouette extrapolate what the vertices say: keep shares within 0 to 1.
     vec4 surface = clamp(v_surface, 0.0, 1.0);
-    float gloss = surface.x, sun = surface.z, dry = 1.0 - surface.w, lid = clamp(v_lid.x, 0.0, 1.0);
+    float gloss = surface.x, sun = surface.z, lid = clamp(v_lid.x, 0.0, 1.0);
+    float dry = WET == 1 ? 1.0 - surface.w : 1.0;
     vec3 n = normalize(v_normal);
     vec3 t = vec3(n.z, 0.0, -n.x) * inversesqrt(max(1.0 - n.y * n.y, 1e-4));
     vec3 b = cross(n, t);
 
     vec4 face = textureLod(u_relief, v_detail.xy, 0.0);
-    vec4 crepe = textureLod(u_lids, v_detail.zw, 0.0);
+    vec4 crepe = LIDS == 1 ? textureLod(u_lids, v_detail.zw, 0.0) : vec4(0.5);
     vec4 colour = textureLod(u_colour, v_detail.xy * u_colour_scale, 0.0) - 0.5;
-    vec2 share = clamp(v_lid.zw, 0.0, 2.0);
-    float thin = share.y / max(share.x + share.y, 1e-3), grain = min(share.x, 1.0) * (1.0 - dry);
-    float conjunctiva = VESSELS * clamp(-v_lid.w, 0.0, 1.0) * (1.0 - grain);
+    vec2 share = LIDS == 1 ? clamp(v_lid.zw, 0.0, 2.0) : vec2(1.0, 0.0);
+    bool is_conjunctiva = WET == 1 && v_lid.w < 0.0;
+    float thin = LIDS == 1 ? share.y / max(share.x + share.y, 1e-3) : 0.0, grain = min(share.x, 1.0) * (1.0 - dry);
+    float conjunctiva = WET == 1 ? VESSELS * clamp(-v_lid.w, 0.0, 1.0) * (1.0 - grain) : 0.0;
     share.x *= 1.0 + 1.6 * colour.a;
     float shown = clamp(v_lid.y, 0.0, 1.0);
-    if (v_lid.w < 0.0) face = vec4(1.0 - face.xy, 1.0, face.a);  // granules stand out, pores do not
+    if (is_conjunctiva) face = vec4(1.0 - face.xy, 1.0, face.a);  // granules stand out, pores do not
     vec2 slope = ((face.xy - 0.5) * share.x + (crepe.xy - 0.5) * share.y) * (2.0 * u_slope_range * shown);
     float rugged = shown * min(share.x + share.y, 1.0) * (1.0 - 0.4 * grain);
     float open = 1.0 - rugged * (1.0 - mix(face.z, crepe.z, thin));
     vec2 lost = u_lost_variance + (1.0 - shown * shown) * 0.03;
     float rough = 2.0 * mix(lost.x, lost.y, thin) * dry;  // Beckmann: m^2 is twice the variance
 
-    float flush = v_lid.w < 0.0 ? FLUSH : 1.0;
+    float flush = is_conjunctiva ? FLUSH : 1.0;
     float blood = colour.r * (flush + 2.0 * grain) + (crepe.a - 0.5) * (thin + conjunctiva);
     float melanin = dry * (colour.g + 0.6 * shown * (face.a - 0.5));
     vec3 albedo = v_albedo * (1.0 - blood * BLOOD - melanin * MELANIN);
@@ -82,11 +85,11 @@ void main() {
     float lobes = (0.70 / PI) * exp2(2.885390 * (n_dot_h - 1.0) / facet_m2) / facet_m2
         + (0.50 / PI) * oil * exp2(2.885390 * (n_dot_h - 1.0) / oily_m2) / oily_m2;
     lobes *= open * open;
-    if (dry < 0.99) lobes += (1.0 - dry) * wet_lobe(normalize(mix(n, n_detail, WET_FOLLOWS)), h, grain);
+    if (WET == 1) lobes += (1.0 - dry) * wet_lobe(normalize(mix(n, n_detail, WET_FOLLOWS)), h, grain);
     vec3 mirrored = u_sun_irradiance * (max(v_surface.y, 0.0) * cosine * lobes);
     vec3 sheen = v_sheen * (open * max(1.0 + 2.0 * upwards, 0.0));
     // Clamped: at edges of triangles varyings are extrapolated to the pixel's middle.
-    float cover = clamp(1.0 - (1.0 - dry) * (1.0 - lid), 0.0, 1.0);
+    float cover = WET == 1 ? clamp(1.0 - (1.0 - dry) * (1.0 - lid), 0.0, 1.0) : 1.0;
     vec3 radiance = max(albedo * max(diffuse, vec3(0.0)) + mirrored + sheen, vec3(0.0));
     out_radiance = vec4(radiance, cover);
 }

@@ -64,7 +64,7 @@ def test_the_shader_sums_the_same_polynomial(gl: moderngl.Context, sky: np.ndarr
         )
         return text.split("void main()", maxsplit=1)[0] + body
 
-    program = build_program(gl, "screen.vert", fragment="skin.frag", rewrite_fragment=asking)
+    program = build_program(gl, "screen.vert", fragment="fabric.frag", rewrite_fragment=asking)
     target = gl.framebuffer([gl.texture((1, 1), 4, dtype="f4")])
     terms = irradiance_terms(sky)
     array = gl.vertex_array(program.gl_program, [])

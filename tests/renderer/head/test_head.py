@@ -11,7 +11,7 @@ import pytest
 from renderer.camera import INTEROCULAR_MM, Matrix, look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.head.buffers import sort_into_cells
+from renderer.head.cells import sort_into_cells
 from renderer.head.character import figure
 from renderer.head.clothing import sweater
 from renderer.head.face_mesh import face_mesh

@@ -8,8 +8,7 @@ import numpy.typing as npt
 import pytest
 
 from renderer.head.strand_group import Strands
-from renderer.head.strands import StrandMesh, blending, ribbons
-from renderer.program import build_program
+from renderer.head.strands import StrandMesh, blending, ribbons, strand_programs
 
 SIZE_PX = 128
 SHAFT = 24  # points of a hair
@@ -47,7 +46,8 @@ def darkness(gl: moderngl.Context, strands: Strands, px_per_mm: float) -> npt.ND
     mean = gl.framebuffer([gl.texture((SIZE_PX, SIZE_PX), 4, dtype="f2")])
     target.use()
     target.clear(1.0, 1.0, 1.0, 1.0)
-    program = build_program(gl, "hair.vert", fragment="hair.frag")
+    mesh = StrandMesh(gl, strands, rng())
+    program = strand_programs(gl)[mesh.kind]
     away_mm = 1e4
     clip = np.diag([2 * px_per_mm / SIZE_PX, 2 * px_per_mm / SIZE_PX, -1e-3, 1.0])
     program.set(
@@ -60,7 +60,6 @@ def darkness(gl: moderngl.Context, strands: Strands, px_per_mm: float) -> npt.ND
         u_sun_irradiance=(0.0, 0.0, 0.0),
         u_ambient_sh=np.zeros((9, 3)),
     )
-    mesh = StrandMesh(gl, strands, rng())
     mesh.write_sun(np.zeros(len(mesh.points_mm)))
     with blending(gl):
         mesh.draw(program, clip, camera_mm=np.array([0.0, 0.0, away_mm]))
