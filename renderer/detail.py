@@ -70,7 +70,7 @@ TABLE: Final[Mapping[str, Mapping[str, Meaning]]] = MappingProxyType(
             "low": _cell("none", samples=0, nodes=0),
             "medium": _cell("none", samples=0, nodes=0),
             "high": _cell("10 samples along the viewing ray", samples=10, nodes=6),
-            "ultra": _cell("200 samples along the viewing ray", samples=200, nodes=12),
+            "ultra": _cell("200 samples along the viewing ray", samples=200, nodes=8),
         },
         "caustics": {
             "off": _cell("none", caustic_map_px=0),

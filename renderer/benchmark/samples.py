@@ -18,7 +18,7 @@ from renderer.detail import Detail
 PART: Final = "samples"
 SAMPLES: Final = (2, 10, 20, 50, 100, 200)
 QUICK_SAMPLES: Final = (10, 200)
-OURS: Final = ("high", "ultra")  # 6 and 12 nodes
+OURS: Final = ("high", "ultra")  # 6 and 8 nodes
 POINTS: Final = 12  # along each side of the patch
 
 
