@@ -1,7 +1,8 @@
 // One entry to the server, and what its answer means.
 
+import { waitOf } from "./patience.js";
+
 const TIMEOUT_MS = 20000;
-const LONGEST_WAIT_MS = 60000;
 const KEEPALIVE_BYTES = 16000; // browsers allow 64 KiB over all requests that outlive a page
 // Answers of the site's after which trying again is pointless: malformed, out of step, too long, or
 // the person withdrew. All others may pass: no connection, too many requests, a server that starts, a
@@ -45,9 +46,4 @@ export async function deliver({ url, csrf, owner }, entry) {
   } finally {
     clearTimeout(timer);
   }
-}
-
-function waitOf(answer) {
-  const seconds = Number(answer.headers.get("Retry-After"));
-  return seconds > 0 ? Math.min(1000 * seconds, LONGEST_WAIT_MS) : 0;
 }

@@ -1,7 +1,8 @@
 // Waiting for the clips: first for them to be rendered, then for them to reach this browser.
 
 import { amountText } from "./amount.js";
-import { fetchPatiently, submitPatiently } from "./navigate.js";
+import { submitPatiently } from "./navigate.js";
+import { fetchPatiently } from "./patience.js";
 import { AHEAD } from "./preload.js";
 import { enterFullscreen, screenFacts } from "./screen.js";
 
@@ -42,14 +43,15 @@ export function startPreparing(main, { clips, start }) {
   /** Ask until the clips of a size that fits this screen are all rendered. */
   async function wait() {
     while (isOpen) {
-      const answer = await fetchPatiently(`${main.dataset.state_url}?${query()}`, {}, () =>
-        show("offline"),
-      );
+      const answer = await fetchPatiently(`${main.dataset.state_url}?${query()}`, {}, {
+        onWaiting: () => show("offline"),
+        isOurs: (text) => text.startsWith("{"),
+      });
       if (!answer.ok || answer.redirected || !isOpen) {
         if (isOpen) location.reload(); // the session ended or moved on: the server knows where to
         return;
       }
-      const news = await answer.json();
+      const news = JSON.parse(answer.text);
       if (!news.fits) return show("small");
       if (news.is_ready) return load(news.clips);
       show("rendering");

@@ -5,9 +5,9 @@
 
 import { newKey } from "./key.js";
 
-const LEASE_MS = 8000;
-const RENEW_MS = 2000;
-const RELOAD_MS = 5000; // so long a tab that is left may take to come back
+const LEASE_MS = 5000;
+const RENEW_MS = 1000;
+const RELOAD_MS = 4000; // so long a tab that is left may take to come back
 const TAB = "ocularist.tab";
 
 export class Tab {

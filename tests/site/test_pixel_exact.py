@@ -33,6 +33,7 @@ def make_video(tmp_path: Path) -> Callable[[int], bytes]:
     return lambda _number: path.read_bytes()
 
 
+@pytest.mark.parametrize("database_kind", ["sqlite"])
 def test_lines_one_pixel_wide_stay_sharp_at_a_ratio_of_one_and_a_half(
     site: Any, guest: Any
 ) -> None:

@@ -11,6 +11,7 @@ from playwright.sync_api import BrowserContext, Page, expect
 
 from study.data import export, trials
 from study.design.certificate import Certificate, judge
+from study.design.definition import read_definition
 
 RULE = Certificate()  # the product's own, never a laxer one
 AT_REST = re.compile("ready|watched|again|interrupted")
@@ -218,3 +219,23 @@ def test_the_study_says_how_often_a_clip_may_be_watched(visit: Any, page: Page) 
     visit.watch()
     for name in ("Watch again", "Watch the clip again"):
         expect(page.get_by_role("button", name=name)).to_have_count(0)
+
+
+def all_clips() -> dict[str, Any]:
+    data = read_definition("thesis").model_dump(mode="json", exclude_unset=True)
+    return {"clips": data["clips"]}
+
+
+@pytest.mark.parametrize("changes", [all_clips()])
+def test_only_the_next_few_clips_are_fetched(visit: Any, page: Page) -> None:
+    fetched: list[str] = []
+    page.on("request", lambda r: fetched.append(r.url) if r.url.endswith(".mp4") else None)
+    visit.straight_to_trial()
+    visit.state("ready")
+    names = page.locator("main").get_attribute("data-next")
+    assert names is not None
+    later = [entry.split()[0] for entry in names.split(",")]
+    assert len(later) == 7
+    page.wait_for_load_state("networkidle")
+    first = page.locator("main").get_attribute("data-clip")
+    assert {url.removeprefix(visit.site.url) for url in fetched} == {first, *later[:3]}

@@ -362,3 +362,44 @@ def test_intervals_are_summed_and_listed(run: Any) -> None:
         {"hidden_ms": 21, "hidden_intervals": [[0, 10], [30, 41]]},
         {"x_ms": 0, "x_intervals": []},
     ]
+
+
+def test_a_form_waits_for_the_site_itself_and_shows_what_follows(run: Any) -> None:
+    script = """
+        const { submitPatiently } = await load("navigate");
+        const page = (heading) => `<body data-csrf="2"><header></header><main><h1 tabindex="-1">` +
+            `${heading}</h1></main><script type="application/json" id="texts">{}</` + `script>`;
+        document.body.innerHTML = page("First") + '<form action="/form"><input name="a" value="1">';
+        const pause = window.setTimeout;
+        window.setTimeout = (act, delay_ms) => pause(act, delay_ms > 20000 ? delay_ms : 1);
+        const answers = [
+            () => Promise.reject(new TypeError("no connection")),
+            () => new Response("starting", { status: 503 }),
+            () => new Response(page("Slow down"), { status: 429, headers: { "Retry-After": "1" } }),
+            () => new Response("<html><form>Sign in to this network</form>"),
+            () => new Response(new ReadableStream({ pull() { throw new TypeError("cut"); } })),
+            () => new Response(page("Second")),
+        ];
+        const sent = [], waited = [];
+        window.fetch = async (url, { body }) => {
+            sent.push(String(body));
+            return answers.shift()();
+        };
+        history.replaceState = () => {};
+        let left = 0, started = 0;
+        await submitPatiently(document.querySelector("form"), () => (started += 1), {
+            extra: [["b", "2"]],
+            onWaiting: () => waited.push(document.querySelector("h1").textContent),
+            onLeave: () => (left += 1),
+        });
+        return { sent, waited, left, started, heading: document.activeElement.textContent,
+                 csrf: document.body.dataset.csrf };
+    """
+    assert run(script) == {
+        "sent": ["a=1&b=2"] * 6,
+        "waited": ["First"] * 5,
+        "left": 1,
+        "started": 1,
+        "heading": "Second",
+        "csrf": "2",
+    }
