@@ -139,7 +139,7 @@ def test_a_files_order_holds_within_a_block(raw: dict[str, Any]) -> None:
 
 
 def test_gold_trials_come_after_as_many_others_as_the_file_says(raw: dict[str, Any]) -> None:
-    gold = {"distance": "near", "left": "low", "right": "ultra"}
+    gold: dict[str, Any] = {"distance": "near", "left": "low", "right": "ultra"}
     gold |= {"expected": [{"question": "noticed", "value": "yes"}]}
     raw["gold"] = [{"id": "late", "after": 3, **gold}, {"id": "early", "after": 0, **gold}]
     raw["order"] = {"trials": "file"}
