@@ -52,21 +52,23 @@ def store(
     definition = by_id(db, participant.study_id).definition
     with db.writing() as session:
         row = locked(session, participant)
-        trial = events.trial_row(session, row.id, position)
-        state = state_of(session, trial)
+        trial, is_reached = events.trial_and_reach(session, row.id, position)
+        was_complete = trial.completed_at is not None
         if events.is_known(session, row, key):
-            return Stored(new=False, is_amendment=False, trial_complete=state.is_complete)
-        check_reached(session, trial)
-        answers = _read(definition, state, given, is_final=is_final)
+            return Stored(new=False, is_amendment=False, trial_complete=was_complete)
+        check_reached(trial, is_reached=is_reached)
+        # What was given before matters only now that all of it is put together.
+        state = state_of(session, trial) if is_final else None
+        answers = _read(definition, state, given)
         start(trial, db)
-        is_final = is_final and not state.is_complete
+        is_final = is_final and not was_complete
         payload: dict[str, Any] = {
             "answers": answers,
             "is_final": is_final,
             "response_ms": response_ms,
             "clock_ms": clock_ms,
         }
-        kind = AMENDED if state.is_complete else ANSWERED
+        kind = AMENDED if was_complete else ANSWERED
         now = db.now()
         event = events.append(
             session, row, key=key, kind=kind, payload=payload, trial=trial, now=now
@@ -77,16 +79,16 @@ def store(
             completion.complete(db, session, row)
         return Stored(
             new=True,
-            is_amendment=state.is_complete,
-            trial_complete=is_final or state.is_complete,
+            is_amendment=was_complete,
+            trial_complete=is_final or was_complete,
         )
 
 
 def _read(
-    definition: StudyDefinition, state: Trial, given: Mapping[str, object], *, is_final: bool
+    definition: StudyDefinition, state: Trial | None, given: Mapping[str, object]
 ) -> dict[str, Value | None]:
-    """Return the answers to store: those given, and when finishing all others as they stand."""
-    if not is_final:
+    """Return the answers to store: those given, and with a ``state`` all others as they stand."""
+    if state is None:
         return read_answers(definition.questions, given, is_final=False)
     needed = definition.order.min_views
     if state.views < needed:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import event, select
+from sqlalchemy import and_, event, or_, select
 from sqlalchemy.orm import Mapper, Session
 
 from study.data.database import Database
@@ -146,6 +146,28 @@ def trial_row(session: Session, participant_id: int, position: int) -> TrialRow:
     if row is None:
         raise NotReachedError(f"there is no trial {position} yet")
     return row
+
+
+def trial_and_reach(session: Session, participant_id: int, position: int) -> tuple[TrialRow, bool]:
+    """Return the trial at a position, and whether no trial before it is still open.
+
+    Raises NotReachedError when there is none.
+    """
+    # One query for both: the trial itself, and open ones before it.
+    rows = session.scalars(
+        select(TrialRow)
+        .where(
+            TrialRow.participant_id == participant_id,
+            or_(
+                TrialRow.position == position,
+                and_(TrialRow.position < position, TrialRow.completed_at.is_(None)),
+            ),
+        )
+        .order_by(TrialRow.position)
+    ).all()
+    if not rows or rows[-1].position != position:
+        raise NotReachedError(f"there is no trial {position} yet")
+    return rows[-1], len(rows) == 1
 
 
 def _plain(payload: Payload) -> dict[str, Any]:

@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from sqlalchemy import select
-from sqlalchemy.orm import Session
-
 from study.data import events
 from study.data.database import Database
 from study.data.events import Recorded
@@ -28,8 +25,8 @@ def record(
     """
     with db.writing() as session:
         row = locked(session, participant)
-        trial = events.trial_row(session, row.id, position)
-        check_reached(session, trial)
+        trial, is_reached = events.trial_and_reach(session, row.id, position)
+        check_reached(trial, is_reached=is_reached)
         start(trial, db)
         return Recorded(
             events.add(session, row, key=key, kind=PLAYED, payload=play, trial=trial, now=db.now())
@@ -42,12 +39,7 @@ def start(trial: TrialRow, db: Database) -> None:
         trial.started_at = db.now()
 
 
-def check_reached(session: Session, trial: TrialRow) -> None:
+def check_reached(trial: TrialRow, *, is_reached: bool) -> None:
     """Raise NotReachedError for a trial behind one that is still open."""
-    open_before = select(TrialRow.id).where(
-        TrialRow.participant_id == trial.participant_id,
-        TrialRow.position < trial.position,
-        TrialRow.completed_at.is_(None),
-    )
-    if session.scalar(open_before.limit(1)) is not None:
+    if not is_reached:
         raise NotReachedError(f"trial {trial.position} comes after the ones before it")
