@@ -1,6 +1,6 @@
 # The two commands that set everything up are `make study` and `make test`; `make help` lists the rest.
 .DEFAULT_GOAL := help
-.PHONY: help study test test-long test-fresh lock clean
+.PHONY: help study test test-long test-fresh pictures lock clean
 
 PYTHON := .venv/bin/python
 # make study STUDY=my-study.toml ARGS="--port 8080"
@@ -27,6 +27,10 @@ test-long: ## the long simulations
 
 test-fresh: ## prove both set-ups in an empty Debian (root and debootstrap)
 	@deploy/fresh
+
+pictures: ## draw every page anew into docs/pictures/pages
+	@deploy/setup test
+	PICTURES=docs/pictures/pages $(PYTHON) -m pytest tests/site/test_every_page.py
 
 lock: ## make the lock files anew from pyproject.toml
 	@deploy/lock
