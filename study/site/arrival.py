@@ -5,6 +5,7 @@ It waits in a signed cookie until they agree to take part; before that nothing i
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Final
@@ -78,7 +79,8 @@ def to_first_page(
 ) -> Response:
     """Lead to the first page under a clean address: nobody passes on whom it named."""
     language = request.query_params.get("lang", "")
-    answer = redirect(f"/?lang={language}" if language.isalnum() and language.isascii() else "/")
+    is_tag = re.fullmatch(r"[A-Za-z0-9-]{1,20}", language) is not None
+    answer = redirect(f"/?lang={language}" if is_tag else "/")
     cookie = sign_arrival(here.secret, {"values": dict(arrival.values), "link": arrival.link})
     remember(request, answer, ARRIVAL_COOKIE, cookie, ARRIVAL_S)
     if is_someone_else:

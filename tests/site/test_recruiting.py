@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 from datetime import timedelta
 from typing import Any
 
 import pytest
 
-from study.data import events, export, links, participants, studies
+from study.data import completion, events, export, links, participants, studies
 from study.data.schema import ParticipantRow, SessionRow
 from study.design.definition import StudyDefinition, parse_definition
 
@@ -20,6 +21,8 @@ PROLIFIC = {
         {"name": "SESSION_ID"},
     ]
 }
+# What the database itself has to do is tried on both kinds, pages on the quicker one.
+on_sqlite = pytest.mark.parametrize("database_kind", ["sqlite"])
 COMING = "/?PROLIFIC_PID=5f3a&STUDY_ID=st-1&SESSION_ID=se-1"
 
 
@@ -50,6 +53,7 @@ def people(site: Any) -> Any:
     return export.tables(site.db, site.study).participants
 
 
+@on_sqlite
 def test_parameters_are_kept_as_the_study_file_says(site: Any, guest: Any) -> None:
     page = guest.get(COMING)
     assert (guest.at, str(page.url.query)) == ("/", "b''")  # nobody passes on a name by accident
@@ -72,6 +76,11 @@ def test_the_same_person_in_another_browser_gets_their_own_session(site: Any, gu
     other.get(COMING)
     assert other.at == "/preparing"
     assert len(people(site)) == 1
+    private = re.findall(r'href="[^"]*(/resume/[^"]+)"', other.get("/stop").text)[0]
+    third = site.guest()
+    third.get(private)
+    assert third.at == "/preparing"
+    third.client.close()
     other.get("/?PROLIFIC_PID=ffff")
     assert other.at == "/"
     assert "Begin" in other.page.text
@@ -99,6 +108,7 @@ def test_two_windows_of_one_person_make_one_participant(site: Any) -> None:
         one.client.close()
 
 
+@on_sqlite
 def test_who_brings_no_required_parameter_is_told_to_use_their_link(site: Any, guest: Any) -> None:
     assert "This study is by invitation" in guest.get("/?STUDY_ID=st-1").text
     guest.get("/consent")
@@ -107,6 +117,7 @@ def test_who_brings_no_required_parameter_is_told_to_use_their_link(site: Any, g
     assert len(people(site)) == 0
 
 
+@on_sqlite
 @pytest.mark.parametrize("value", ["x" * 5000, "%00", "%0d%0aSet-Cookie:a=b", "%ED%A0%BD", "%20"])
 def test_a_value_that_no_recruiter_sends_is_none(guest: Any, value: str) -> None:
     page = guest.get(f"/?PROLIFIC_PID={value}")
@@ -114,6 +125,7 @@ def test_a_value_that_no_recruiter_sends_is_none(guest: Any, value: str) -> None
     assert "This study is by invitation" in page.text
 
 
+@on_sqlite
 @with_recruiting(parameters=[{"name": "id", "store": "plain", "is_exported": True}])
 def test_hostile_values_stay_values(site: Any, guest: Any) -> None:
     evil = "'\"><script>alert(1)</script>"
@@ -151,6 +163,7 @@ def test_a_personal_link_opens_one_session_on_any_device(site: Any, guest: Any) 
         one.client.close()
 
 
+@on_sqlite
 def test_a_link_that_nobody_made_for_this_study_says_so(site: Any, guest: Any) -> None:
     other = parse_definition(
         json.loads(site.study.definition.to_json()) | {"key": "other", "recruiting": None}
@@ -163,6 +176,7 @@ def test_a_link_that_nobody_made_for_this_study_says_so(site: Any, guest: Any) -
     assert "LINK-UNKNOWN" in page.text
 
 
+@on_sqlite
 def test_a_personal_link_takes_a_browser_over_from_somebody_else(site: Any, guest: Any) -> None:
     guest.get(COMING)
     guest.walk_to_preparing()
@@ -173,6 +187,7 @@ def test_a_personal_link_takes_a_browser_over_from_somebody_else(site: Any, gues
     assert len(people(site)) == 2
 
 
+@on_sqlite
 @with_recruiting(shared_computers=True)
 def test_half_an_hour_without_a_sign_frees_a_shared_computer(site: Any, guest: Any) -> None:
     guest.walk_to_trial()
@@ -195,6 +210,7 @@ def test_half_an_hour_without_a_sign_frees_a_shared_computer(site: Any, guest: A
     assert "answered" not in [event.kind for event in events.history(site.db, second)]
 
 
+@on_sqlite
 @with_recruiting(shared_computers=True)
 def test_finishing_frees_a_shared_computer(site: Any, guest: Any) -> None:
     guest.walk_to_trial()
@@ -209,6 +225,7 @@ def test_finishing_frees_a_shared_computer(site: Any, guest: Any) -> None:
     assert len(people(site)) == 2
 
 
+@on_sqlite
 @with_recruiting()
 def test_after_half_an_hour_ones_own_browser_asks_who_is_there(site: Any, guest: Any) -> None:
     guest.walk_to_trial()
@@ -220,6 +237,7 @@ def test_after_half_an_hour_ones_own_browser_asks_who_is_there(site: Any, guest:
     assert guest.at == "/trial/1"
 
 
+@on_sqlite
 @with_recruiting()
 def test_what_is_sent_from_a_page_left_open_is_taken(site: Any, guest: Any) -> None:
     guest.walk_to_trial()
@@ -230,6 +248,7 @@ def test_what_is_sent_from_a_page_left_open_is_taken(site: Any, guest: Any) -> N
     assert guest.at == "/trial/2"
 
 
+@on_sqlite
 @with_recruiting()
 def test_an_outbox_delivers_for_its_owner_alone(site: Any, guest: Any) -> None:
     guest.walk_to_trial()
@@ -250,6 +269,7 @@ def test_an_outbox_delivers_for_its_owner_alone(site: Any, guest: Any) -> None:
     stranger.client.close()
 
 
+@on_sqlite
 def test_a_pseudonym_is_not_a_key(site: Any, guest: Any) -> None:
     guest.get(COMING)
     guest.walk_to_preparing()
@@ -260,3 +280,33 @@ def test_a_pseudonym_is_not_a_key(site: Any, guest: Any) -> None:
         other.get(f"/resume/{guess}")
         assert other.at == "/"
     other.client.close()
+
+
+@on_sqlite
+def test_the_dashboard_tells_outcomes_links_and_withdrawals(site: Any, guest: Any) -> None:
+    links_made = links.make(site.db, site.study, 3)
+    guest.get(f"/link/{links_made[0].token}")
+    guest.walk_to_preparing()
+    completion.screen_out(site.db, site.people()[0], reason="screen")
+    gone = site.guest()
+    gone.get(COMING)
+    gone.walk_to_trial()
+    gone.get("/stop")
+    gone.post("/stop", choice="remove", sure="yes")
+    gone.sign_in()
+    overview = gone.get("/researcher").text
+    assert "of 3, 2 unused" in overview
+    for tile in ("Screened out</dt><dd>1", "Withdrawn</dt><dd>1", "Came</dt><dd>2"):
+        assert tile in overview, tile
+    listed = gone.get("/researcher/people").text
+    assert "<td>screened out</td>" in listed
+    assert "<td>personal link</td>" in listed
+    assert re.search(r"<td>\d{4}-\d\d-\d\d</td><td>practice clip</td>", listed)
+    gone.client.close()
+
+
+@on_sqlite
+def test_a_language_asked_for_is_kept_on_the_way(guest: Any) -> None:
+    guest.client.follow_redirects = False
+    assert guest.get(COMING + "&lang=pt-br").headers["location"] == "/?lang=pt-br"
+    assert guest.get(COMING + "&lang=//x.example").headers["location"] == "/"
