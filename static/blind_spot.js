@@ -33,6 +33,7 @@ export class BlindSpot {
       part.addEventListener(name, action, { signal: this.stop.signal });
     this.find = (what) => stage.querySelector(what);
     on(document, "keydown", (event) => this.key(event));
+    on(document, "keyup", (event) => event.key === " " && event.preventDefault());
     on(this.find("[data-gone]"), "click", (event) => this.gone(event.timeStamp));
     on(this.find("[data-next]"), "click", () => this.begin());
     on(this.find("[data-spot-end]"), "click", () => this.end(null));

@@ -34,8 +34,17 @@ export function startCalibration(main, { start }) {
   find("[data-stage='skip-card']").addEventListener("submit", skipCard);
   find("[data-stage='skip-distance']").addEventListener("submit", skipDistance);
   find("[data-send]").addEventListener("submit", send);
+  if (matchMedia("(prefers-reduced-motion: reduce)").matches) offerStillness();
   begin();
   return () => spot?.close();
+
+  /** Whoever wants less motion is offered first to move the dot by key. */
+  function offerStillness() {
+    const [moving, byKey] = main.querySelectorAll("[data-spot]");
+    moving.before(byKey);
+    byKey.classList.remove("quiet");
+    moving.classList.add("quiet");
+  }
 
   function show(stage) {
     if (stage === "card") begin();

@@ -8,7 +8,7 @@ from importlib import resources
 from typing import Any
 
 import pytest
-from playwright.sync_api import BrowserContext, Page, expect
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from study.commands.self_test import make_self_test
 from study.data import events, export
@@ -85,6 +85,7 @@ def press(page: Page, what: str) -> None:
 
 def test_all_checks_are_passed_by_keyboard_alone(site: Any, page: Page) -> None:
     make_self_test(site.settings.media_folder)
+    page.route("**/clips/*.mp4", lambda route: route.fulfill(body=b"x" * 600_000))
     seed = enter(page, site)
     look_at_the_screen(page, site, seed)
     measure(page)
@@ -107,6 +108,7 @@ def test_all_checks_are_passed_by_keyboard_alone(site: Any, page: Page) -> None:
     assert 0 < row["colour_error"] <= 3
     assert row["codec"].startswith("avc1.")
     assert 10 < row["refresh_hz"] < 300
+    assert row["mbit_s"] > 1
     assert (row["dark_steps"], row["light_steps"]) == (5, 5)
     # The card was set to 340 CSS pixels of 1.5 device pixels each, the eye is at 50 cm.
     assert row["mm_per_px"] == pytest.approx(85.6 / 340 / 1.5, rel=0.01)
@@ -211,6 +213,32 @@ def test_the_dot_moves_by_the_clock_and_the_mark_makes_room(
     expect(page).to_have_url(f"{site.url}/eyesight")
     row = export.tables(site.db, site.study).participants.iloc[0]
     assert (row["scale_method"], row["calibration_skipped"]) == ("diagonal", "one_eye")
+
+
+def test_less_motion_is_offered_first_to_those_who_wish_it(site: Any, page: Page) -> None:
+    enter(page, site, "device_check")
+    first = page.locator("[data-stage=distance] .actions button").first
+    expect(first).to_have_attribute("data-spot", "by_itself")
+    page.emulate_media(reduced_motion="reduce")
+    page.reload()
+    expect(first).to_have_attribute("data-spot", "by_key")
+
+
+def test_a_phone_is_told_to_come_back_at_a_computer(
+    site: Any, page: Page, chromium: Browser
+) -> None:
+    enter(page, site)
+    cookies: Any = page.context.cookies()
+    size: Any = {"width": 390, "height": 844}
+    phone = chromium.new_context(viewport=size, screen=size, is_mobile=True, has_touch=True)
+    phone.add_cookies(cookies)
+    page.close()
+    small = phone.new_page()
+    small.goto(f"{site.url}/device-check")
+    expect(small.locator("[data-item=device]")).to_have_attribute("data-verdict", "bad")
+    expect(small.locator("[data-item=device] [data-remedy]")).to_be_visible()
+    expect(small.locator("[data-actions]")).to_be_visible()
+    phone.close()
 
 
 def test_an_eyesight_test_can_be_left_out_at_every_step(site: Any, page: Page) -> None:
