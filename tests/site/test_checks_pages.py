@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,13 @@ from study.checking import (
     eyesight_report,
     squares_of,
 )
+from study.commands.preparing import prepare
 from study.commands.self_test import make_self_test
 from study.data import events, export
 from study.design.definition import StudyDefinition, parse_definition
 from study.design.patches import self_test_name
 from study.design.plates import plates
+from study.settings import Settings
 from study.simulate import simulate
 from study.site.signatures import simulation_token
 
@@ -249,3 +252,14 @@ def test_bots_and_simulated_people_pass_the_checks_and_irises_get_their_angle(si
     assert share.between(0.07, 0.09).all()
     assert (tables.ratings["shown_scale_se"] < 0.001).all()
     assert tables.comparisons["iris_deg"].notna().all()
+
+
+def test_starting_a_site_makes_the_self_test_where_a_study_wants_it(tmp_path: Path) -> None:
+    for name in ("thesis", "lod"):
+        settings = Settings(
+            data_folder=tmp_path / name,
+            database_url=f"sqlite:///{tmp_path}/{name}/study.sqlite3",
+            media_folder=tmp_path / name / "clips",
+        )
+        prepare(settings, name).db.close()
+        assert (settings.media_folder / self_test_name()).is_file() == (name == "lod")
