@@ -40,6 +40,8 @@ def codebook_of(study: Study, more: Mapping[str, Sequence[Column]]) -> dict[str,
     accepted: dict[str, Any] = {
         "clip": [clip.id for clip in definition.every_clip],
         "distance": list(definition.distances),
+        "language": list(definition.languages),
+        **({"iris": list(definition.irises)} if definition.irises else {}),
         **{name: list(definition.lods) for name in _LOD_COLUMNS},
     }
     for question in each_asked((*definition.about, *definition.questions)):

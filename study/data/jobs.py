@@ -171,9 +171,10 @@ def requeue(db: Database, clip_ids: Collection[str]) -> int:
 def all_jobs(db: Database, clip_ids: Collection[str] | None = None) -> list[Job]:
     """Return the jobs in rendering order: all, or those of some clips."""
     query = select(JobRow).order_by(JobRow.priority)
+    if clip_ids is not None:
+        query = query.where(JobRow.clip_id.in_(clip_ids))
     with db.reading() as session:
-        rows = session.scalars(query).all()
-    return [_job(row) for row in rows if clip_ids is None or row.clip_id in clip_ids]
+        return [_job(row) for row in session.scalars(query)]
 
 
 def by_clip(db: Database, clip_id: str) -> Job | None:

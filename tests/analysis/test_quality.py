@@ -26,6 +26,20 @@ def test_practice_is_not_asked_for() -> None:
     assert quality_statements(data)[0] == "Ratings of practice trials, not counted: 1."
 
 
+def test_gold_trials_are_left_out_like_practice_and_told_apart() -> None:
+    rows = [
+        ("A", "bare", 1, False, True),
+        ("A", "low", 2, True, False),
+        ("A", "low", 1, False, None),
+    ]
+    data = tables(rows, "is_practice", "is_gold")
+    assert missing_answers(data).set_index("column").loc["rating", "asked"] == 1
+    assert quality_statements(data)[:2] == [
+        "Ratings of practice trials, not counted: 1.",
+        "Ratings of gold trials, not counted: 1.",
+    ]
+
+
 def test_use_of_the_scale_by_person() -> None:
     rows = [("A", "low", 1, 2000), ("A", "high", 5, 4000), ("A", "ultra", None, None)]
     row = people_overview(tables(rows, "response_ms")).iloc[0]

@@ -151,6 +151,28 @@ def test_a_study_without_checks_leaves_their_columns_empty(
     assert row["order_code"] == f"0/0/{walk.participant.seed}"
 
 
+def test_tables_name_the_iris_of_each_clip_and_the_codebook_all_of_them(
+    db: Database, raw: dict[str, Any], enrol_into: Any
+) -> None:
+    raw["irises"] = {"dark": {"iris_seed": 4, "iris_colour": "brown"}, "light": {"iris_seed": 2}}
+    raw["clips"] = [{**clip, "iris": "dark"} for clip in raw["clips"]]
+    raw |= {"gold": [], "attention": [], "breaks": None, "key": "two", "order": {"trials": "file"}}
+    study = studies.register(db, parse_definition(raw))
+    walk = enrol_into(study)
+    walk.begin()
+    walk.finish()
+    found = export.tables(db, study)
+    rows = found.comparisons[["clip", "iris", "iris_seed", "iris_colour"]].astype(object)
+    assert rows.where(rows.notna(), None).to_numpy().tolist() == [
+        ["p", None, 1, "blue"],
+        ["a", "dark", 4, "brown"],
+        ["b", "dark", 4, "brown"],
+        ["catch-far-low", None, 1, "blue"],
+    ]
+    columns = {column["name"]: column for column in found.codebook["tables"]["ratings"]}
+    assert columns["iris"]["accepted"] == ["dark", "light"]
+
+
 def test_the_order_code_of_the_tables_gives_the_trials_again(
     db: Database, raw: dict[str, Any], enrol_into: Any
 ) -> None:

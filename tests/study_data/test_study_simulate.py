@@ -66,6 +66,18 @@ def test_better_eyes_are_rated_higher_up_close(db: Database, thesis: StudyDefini
     assert means["low"] + 0.5 < means["ultra"]
 
 
+def test_simulated_people_take_the_recommended_study_whole(db: Database) -> None:
+    study = simulate(db, read_definition("lod"), participants=2, seed=4)
+    found = export.tables(db, study)
+    rows = found.comparisons
+    assert len(rows) == 2 * (3 + 16 + 4 + 1)
+    assert rows.groupby("is_catch").size().tolist() == [2 * 19, 2 * 5]  # one is for practice
+    assert rows["is_warm_up"].sum() == 2 * 2
+    assert found.participants["attention_passed"].notna().all()
+    assert found.participants["block"].nunique() == found.participants["order_row"].nunique() == 2
+    assert found.participants["outcome"].tolist() == ["completed"] * 2
+
+
 def test_the_same_seed_gives_the_same_people_and_answers(
     tmp_path: Path, definition: StudyDefinition, clock: Any
 ) -> None:
