@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.observers import Observer, Stimulus, draw_observer
+from analysis.spoilers import spoiled
 from analysis.table import column_names
 
 
@@ -20,11 +21,13 @@ def simulate_tables(
     *,
     participants: int,
     experts: Sequence[bool] | None = None,
+    spoilers: Mapping[int, str] | None = None,
 ) -> dict[str, pd.DataFrame]:
     """Let ``participants`` observers each answer every clip once, in an order of their own.
 
-    ``experts`` says for each person whether an expert; without it that is drawn too. Returns the
-    tables ratings, comparisons and participants, ready for ``tables_from``.
+    ``experts`` says for each person whether an expert; without it that is drawn too. ``spoilers``
+    names the kind of those who spoil their answers, by their number from 0. Returns the tables
+    ratings, comparisons and participants, ready for ``tables_from``.
     """
     ratings: list[dict[str, object]] = []
     comparisons: list[dict[str, object]] = []
@@ -32,6 +35,8 @@ def simulate_tables(
     names = list(clips)
     for number in range(participants):
         observer = draw_observer(rng, is_expert=None if experts is None else experts[number])
+        if spoilers and number in spoilers:
+            observer = spoiled(observer, spoilers[number])
         who = {"simulated": True, "participant": f"S{number + 1:03}"}
         people.append({**who, "status": "completed", **observer.about_you(rng)})
         for position, k in enumerate(rng.permutation(len(names)), start=1):
