@@ -102,7 +102,7 @@ class Wire:
                 self._keep(value.strip())
             elif name:
                 headers[name.lower()] = value.strip()
-        body = await reader.readexactly(int(headers.get("content-length", "0")))
+        body = await _body(reader, headers)
         if headers.get("connection") == "close":
             self.close()
         return Answered(int(first.split(" ", 2)[1]), headers, body)
@@ -113,3 +113,13 @@ class Wire:
             self.cookies[name] = value
         else:
             self.cookies.pop(name, None)
+
+
+async def _body(reader: asyncio.StreamReader, headers: Mapping[str, str]) -> bytes:
+    if headers.get("transfer-encoding", "").lower() != "chunked":
+        return await reader.readexactly(int(headers.get("content-length", "0")))
+    parts = []
+    while size := int((await reader.readuntil(b"\r\n")).split(b";")[0], 16):
+        parts.append((await reader.readexactly(size + 2))[:-2])
+    await reader.readuntil(b"\r\n")
+    return b"".join(parts)
