@@ -9,6 +9,13 @@ import { Intervals } from "./intervals.js";
 import { isWindowed, screenFacts } from "./screen.js";
 
 const isOnGrid = (edge_px) => Math.abs(edge_px - Math.round(edge_px)) < 0.05;
+/** How much of a box lies inside the window, from 0 to 1. */
+function visibleShare(box) {
+  const width = Math.min(box.right, innerWidth) - Math.max(box.left, 0);
+  const height = Math.min(box.bottom, innerHeight) - Math.max(box.top, 0);
+  return (Math.max(0, width) * Math.max(0, height)) / (box.width * box.height);
+}
+
 const round = (value, digits = 1) => Math.round(value * 10 ** digits) / 10 ** digits;
 
 export class PlayRecord {
@@ -34,6 +41,7 @@ export class PlayRecord {
     this.hidden = new Intervals(document.hidden);
     this.unfocused = new Intervals(!document.hasFocus());
     this.windowed = new Intervals(isWindowed());
+    this.visible_share = 1;
     this.rates = [video.playbackRate];
     this.shown = this.seen = this.shownSize();
     this.listen();
@@ -100,12 +108,13 @@ export class PlayRecord {
     this.options.onFirstFrame(shown_ms);
   }
 
-  /** Count every change of the shown size, whatever made it. */
+  /** Count every change of the shown size, whatever made it, and see what the window cuts off. */
   checkSize() {
     const now = this.shownSize();
     const by_px = (name) => Math.abs(now[name] - this.seen[name]);
     if (by_px("width_px") + by_px("height_px") > 0.5) this.counts.resizes += 1;
     this.seen = now;
+    this.visible_share = Math.min(this.visible_share, visibleShare(now.box));
   }
 
   /** The video's size in device pixels. */
@@ -149,6 +158,7 @@ export class PlayRecord {
       shown_width_px: round(width_px, 2),
       shown_height_px: round(height_px, 2),
       shown_scale: round(width_px / video.videoWidth, 4),
+      visible_share: round(this.visible_share, 4),
       is_on_grid: isOnGrid(box.left * ratio) && isOnGrid(box.top * ratio),
       is_ratio_whole: Number.isInteger(ratio),
       clock_ms: clockStep_ms(),

@@ -61,6 +61,7 @@ REASONS: Final[Mapping[str, str]] = {
     "unfocused": "another window had the focus",
     "windowed": "the page did not fill the screen",
     "scaled": "the clip was not shown pixel for pixel",
+    "cut-off": "part of the clip lay outside the window",
     "other-clip": "the file was not the clip of the trial",
 }
 
@@ -145,6 +146,11 @@ def _was_scaled(play: Play, rule: Certificate) -> bool:
     return is_off or _over("resizes", 0, play)
 
 
+def _visible(play: Play) -> float:
+    found = number(play, "visible_share")
+    return 1.0 if found is None else found
+
+
 def _is_other_clip(play: Play, _rule: Certificate) -> bool:
     wanted = play.get("expected_sha256")
     return bool(wanted) and play.get("clip_sha256", wanted) != wanted
@@ -164,5 +170,6 @@ _CHECKS: Final[Mapping[str, Callable[[Play, Certificate], bool]]] = {
     "unfocused": lambda play, rule: not rule.may_lose_focus and _over("unfocused_ms", 0, play),
     "windowed": lambda play, rule: not rule.may_be_windowed and _over("windowed_ms", 0, play),
     "scaled": _was_scaled,
+    "cut-off": lambda play, rule: _visible(play) < 1 - rule.scale_tolerance,
     "other-clip": _is_other_clip,
 }

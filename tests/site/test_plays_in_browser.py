@@ -68,6 +68,7 @@ def test_a_play_that_was_truly_shown_is_certified(visit: Any, site: Any, page: P
         pytest.approx(320, abs=0.05),
         pytest.approx(180, abs=0.05),
     )
+    assert play["visible_share"] == 1
     assert (play["seeks"], play["pauses"], play["resizes"]) == (0, 0, 0)
     assert (play["min_rate"], play["max_rate"]) == (1, 1)
     assert (play["hidden_ms"], play["unfocused_ms"], play["hidden_intervals"]) == (0, 0, [])
@@ -111,10 +112,12 @@ def test_tampering_from_the_console_fails_and_the_answers_are_kept(
     assert "speed" in judge(hurried, RULE).reasons
     visit.state("again")
 
-    during_the_play(page, "video.style.width = '100px'; dispatchEvent(new Event('blur'))")
+    during_the_play(
+        page, "video.style = 'width: 100px; left: -20px'; dispatchEvent(new Event('blur'))"
+    )
     page.evaluate("document.hasFocus = () => false")
     squeezed = play_again(visit)
-    assert {"unfocused", "scaled"} <= set(judge(squeezed, RULE).reasons)
+    assert {"unfocused", "scaled", "cut-off"} <= set(judge(squeezed, RULE).reasons)
     assert squeezed["unfocused_ms"] > 0
     visit.state("watched")  # asked twice, as the study file says, and then no more
     page.evaluate("delete document.hasFocus")

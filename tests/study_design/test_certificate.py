@@ -65,6 +65,7 @@ def test_a_faultless_play_counts() -> None:
         ({"shown_scale": 0.98}, "scaled"),
         ({"shown_scale": 1.02}, "scaled"),
         ({"resizes": 1}, "scaled"),
+        ({"visible_share": 0.98}, "cut-off"),
         ({"clip_sha256": "cd"}, "other-clip"),
         ({"clip_sha256": ""}, "other-clip"),
     ],
@@ -81,6 +82,7 @@ def test_each_fault_fails_alone_and_says_why(changes: dict[str, Any], reason: st
         {"wall_ms": 5400},
         {"windowed_ms": 5000},
         {"shown_scale": 1.01},
+        {"visible_share": 0.99},
         {"hidden_ms": None, "stalled_ms": "long", "seeks": float("nan"), "pauses": True},
     ],
 )
