@@ -2,7 +2,7 @@
 //
 // What is found good or bad here is only shown; the server judges the report again.
 
-import { connectionRate, frameTimes, isPhone, zoomOf } from "./measures.js";
+import { connectionRate, frameTimes, isPhone, screenZoom, zoomOf } from "./measures.js";
 import { submitPatiently } from "./navigate.js";
 import { selfTest } from "./self_test.js";
 import { screenFacts } from "./screen.js";
@@ -116,12 +116,13 @@ const MEASURES = {
 
   async screen(main, report) {
     const facts = screenFacts();
-    report.screen_width_px = facts.screen_width_px;
-    report.screen_height_px = facts.screen_height_px;
+    const enlarged = screenZoom();
+    report.screen_width_px = Math.round(facts.screen_width_px / enlarged);
+    report.screen_height_px = Math.round(facts.screen_height_px / enlarged);
     report.window_width_px = facts.viewport_width_px;
     report.window_height_px = facts.viewport_height_px;
     report.pixel_ratio = facts.device_pixel_ratio;
-    const size = { width: facts.screen_width_px, height: facts.screen_height_px };
+    const size = { width: report.screen_width_px, height: report.screen_height_px };
     const fitting = main.dataset.sizes
       .split(" ")
       .map((one) => one.split("x").map(Number))
@@ -149,11 +150,8 @@ const MEASURES = {
   async decoder(main, report) {
     const { self_test, patches, patch_px, columns } = main.dataset;
     const wanted = JSON.parse(patches);
-    const found = await selfTest(self_test, {
-      count: wanted.length,
-      patch_px: Number(patch_px),
-      columns: Number(columns),
-    });
+    const layout = { count: wanted.length, patch_px: Number(patch_px), columns: Number(columns) };
+    const found = await selfTest(self_test, layout, main.dataset.sizes.split(" ").at(-1));
     Object.assign(report, found);
     const error = Math.max(...wanted.flat().map((one, i) => Math.abs(one - found.patches.flat()[i])));
     const shown = Math.round(10 * error) / 10;

@@ -22,6 +22,15 @@ export function zoomOf() {
   return ZOOMS.find((zoom) => Math.abs(found / zoom - 1) < 0.03) ?? null;
 }
 
+/**
+ * By how much zooming enlarges what a browser says of its screen in device pixels. Chromium counts
+ * the zoom into the pixel ratio and not into the screen's size; Firefox counts it into both, Safari
+ * into neither.
+ */
+export function screenZoom() {
+  return "chrome" in window || navigator.userAgentData ? (zoomOf() ?? 1) : 1;
+}
+
 /** Frames per second and how irregularly they come (a robust standard deviation). */
 export function frameTimes() {
   return new Promise((resolve, reject) => {

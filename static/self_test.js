@@ -2,8 +2,11 @@
 
 const PATIENCE_MS = 8000;
 
-/** Return {codec, is_smooth, is_power_efficient, patches}; rejects where the clip does not play. */
-export async function selfTest(url, layout) {
+/**
+ * Return {codec, is_smooth, is_power_efficient, patches}; rejects where the clip does not play.
+ * `size` is that of the study's clips, "1920x1080": decoding is asked for at that size.
+ */
+export async function selfTest(url, layout, size) {
   const answer = await fetch(url);
   if (!answer.ok) throw new Error(`HTTP-${answer.status}`);
   const bytes = await answer.arrayBuffer();
@@ -12,7 +15,7 @@ export async function selfTest(url, layout) {
   const video = document.createElement("video");
   try {
     await firstFrame(video, address);
-    return { codec, ...(await decoding(codec, video)), patches: patchesOf(video, layout) };
+    return { codec, ...(await decoding(codec, size)), patches: patchesOf(video, layout) };
   } finally {
     video.removeAttribute("src");
     video.load();
@@ -32,13 +35,14 @@ function codecOf(bytes) {
   return "";
 }
 
-async function decoding(codec, video) {
+async function decoding(codec, size) {
+  const [width, height] = size.split("x").map(Number);
   const asked = {
     type: "file",
     video: {
       contentType: `video/mp4; codecs="${codec}"`,
-      width: video.videoWidth,
-      height: video.videoHeight,
+      width,
+      height,
       bitrate: 12e6, // of our largest clips
       framerate: 30,
     },

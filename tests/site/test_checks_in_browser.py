@@ -224,6 +224,18 @@ def test_less_motion_is_offered_first_to_those_who_wish_it(site: Any, page: Page
     expect(first).to_have_attribute("data-spot", "by_key")
 
 
+def test_an_enlarged_page_is_told_and_makes_no_larger_screen(site: Any, page: Page) -> None:
+    enter(page, site)
+    # A window of 1125 pixels that shows 900 of the page's: 125 %, as Chromium tells it.
+    page.add_init_script("Object.defineProperty(window, 'outerWidth', { value: 1125 })")
+    page.reload()
+    zoom = page.locator("[data-item=window]")
+    expect(zoom).to_have_attribute("data-verdict", "bad")
+    expect(zoom.locator("[data-found]")).to_have_text("125 %, pixel ratio 1.5")
+    expect(zoom.locator("[data-remedy]")).to_contain_text("Press Ctrl and 0")
+    expect(page.locator("[data-item=screen] [data-found]")).to_contain_text("1080 × 768 pixels")
+
+
 def test_a_phone_is_told_to_come_back_at_a_computer(
     site: Any, page: Page, chromium: Browser
 ) -> None:
