@@ -102,7 +102,7 @@ def findings(
         "refresh": _unless_unknown(report.refresh_hz, lambda hz: hz >= check.min_refresh_hz),
         "decoder": _unless_unknown(report.colour_error, lambda e: e <= check.max_colour_error),
         "bandwidth": _unless_unknown(report.mbit_s, lambda rate: rate >= check.min_mbit_s),
-        "contrast": _answered([s and s >= check.min_steps for s in (dark, light)]),
+        "contrast": _answered([None if s is None else s >= check.min_steps for s in (dark, light)]),
         "light": _answered([a and a != "on" for a in (report.night_light, report.hdr)]),
         "remote": "bad" if len(remote_hints(report)) > 1 else "good",
     }
