@@ -27,6 +27,7 @@ export function startWatching(main, options) {
   let viewsAllowed = main.dataset.views_allowed ? number("views_allowed") : Infinity;
   let retries = number("retries");
   let speakUp = () => {};
+  let isOpen = true;
 
   const player = new Player(stage, {
     width: number("width"),
@@ -46,6 +47,7 @@ export function startWatching(main, options) {
   return {
     play: () => player.play(),
     close: () => {
+      isOpen = false;
       player.close();
       restAgain();
     },
@@ -64,11 +66,13 @@ export function startWatching(main, options) {
     };
     clips.onProgress();
     try {
-      await openEitherWay(await clips.loadFirst(clip));
+      const held = await clips.loadFirst(clip);
+      if (!isOpen) return;
+      await openEitherWay(held);
       // What comes next is fetched while this clip is looked at; its own page tells of failures.
       for (const one of next) clips.load(one).catch(() => {});
     } catch (error) {
-      broken(error?.message?.split(" ")[0] || "DECODE");
+      if (isOpen) broken(error?.message?.split(" ")[0] || "DECODE");
     }
   }
 
