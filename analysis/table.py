@@ -149,6 +149,7 @@ PARTICIPANTS: Final = (
         "how taking part ended; empty while it has not",
         choices=("completed", "screened_out", "failed_checks"),
     ),
+    Column("language", "text", "language in which the participant read the study"),
     Column("works_with_graphics", "category", "works with graphics", choices=("yes", "no")),
     Column("last_played", "text", "when the participant last played a computer game"),
     Column("age", "integer", "age", "year", low=0, high=130),

@@ -121,6 +121,7 @@ def participant_row(study: Study, person: Collected) -> Row:
         "completed_at": _iso(row.completed_at),
         "status": COMPLETED if row.completed_at else step or f"{done} trials",
         "outcome": row.outcome,
+        "language": row.language,
         **own_answers.cells(study.definition.about, person.about),
         **_arrival(study, row.arrival or {}),
         **{name: person.device.get(name) for name in devices.COLUMNS},

@@ -137,6 +137,15 @@ def test_answers_in_another_language_are_the_same_data(site: Any, reader: Any) -
     assert (row["comparison"], row["noticed"], row["what_differed"]) == (1, "yes", "اللمعان")
 
 
+def test_the_tables_tell_who_read_which_language(site: Any, guest: Any, reader: Any) -> None:
+    guest.agree()
+    reader.agree()
+    found = export.tables(site.db, site.study)
+    assert sorted(found.participants["language"]) == ["ar", "en"]
+    [column] = [c for c in found.codebook["tables"]["participants"] if c["name"] == "language"]
+    assert column["accepted"] == ["en", "ar"]
+
+
 def test_researchers_read_english(reader: Any) -> None:
     reader.get("/researcher/sign-in")
     assert '<html lang="en"' in reader.page.text
