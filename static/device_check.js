@@ -128,7 +128,7 @@ const MEASURES = {
       .map((one) => one.split("x").map(Number))
       .filter(([width, height]) => width <= size.width && height <= size.height);
     if (!fitting.length) return { verdict: "bad", words: text("device_check.screen", size) };
-    const fits = fitting.at(-1).join(" × ");
+    const fits = `\u2066${fitting.at(-1).join(" × ")}\u2069`; // left to right in every language
     return { verdict: "good", words: text("device_check.screen_fits", { ...size, fits }) };
   },
 
