@@ -28,7 +28,7 @@ def add_study(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         default=DEFAULT_STUDY,
         metavar="STUDY",
-        help="a built-in study (thesis, lod, approach) or the path of a study file "
+        help="a built-in study (thesis, lod, ablation, approach) or the path of a study file "
         "(default: %(default)s)",
     )
 
