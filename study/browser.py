@@ -77,7 +77,8 @@ class Browser:
 
     def get(self, path: str) -> Page:
         """Open a page."""
-        return self._open(urllib.request.Request(urljoin(self.url, path)))
+        headers = {SIMULATION_HEADER: self.simulation_token}
+        return self._open(urllib.request.Request(urljoin(self.url, path), headers=headers))
 
     def post(self, path: str, fields: Mapping[str, Any]) -> Page:
         """Send a form of the page that is open, its hidden fields included."""

@@ -47,11 +47,13 @@ Fields = Annotated[dict[str, list[str]], Depends(read_form)]
 
 
 @router.get("/consent")
-def consent(here: Here, visitor: MaybeVisitor, arrival: Arrived, wishes: Wishes) -> Response:
+def consent(
+    request: Request, here: Here, visitor: MaybeVisitor, arrival: Arrived, wishes: Wishes
+) -> Response:
     """Show what a participant agrees to."""
     if visitor is not None and not visitor.is_released:
         return to_current(here, visitor)
-    if not is_let_in(here.study(wishes), arrival):
+    if not is_let_in(here.study(wishes), arrival) and not _is_simulated(request, here):
         return redirect("/")
     return _consent_page(here, wishes)
 
@@ -93,7 +95,7 @@ def agree(
     if visitor is not None and not visitor.is_released:  # a double click, or Back and send again
         return to_current(here, visitor)
     study = here.study(wishes)
-    if not is_let_in(study, arrival):
+    if not is_let_in(study, arrival) and not _is_simulated(request, here):
         return redirect("/")
     terms = study.definition.consent
     if first(fields, "version") != terms.version:

@@ -310,3 +310,12 @@ def test_a_language_asked_for_is_kept_on_the_way(guest: Any) -> None:
     guest.client.follow_redirects = False
     assert guest.get(COMING + "&lang=pt-br").headers["location"] == "/?lang=pt-br"
     assert guest.get(COMING + "&lang=//x.example").headers["location"] == "/"
+
+
+@on_sqlite
+@with_recruiting(links_only=True)
+def test_simulated_people_need_no_invitation(site: Any) -> None:
+    one = site.guest(**site.simulation)
+    one.agree()
+    assert one.at == "/about-you"
+    one.client.close()
