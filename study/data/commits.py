@@ -43,6 +43,12 @@ class GroupCommit:
         self._waiting = 0
         self._group: _Group | None = None
 
+    @property
+    def waiting(self) -> int:
+        """How many wait for their turn."""
+        with self._count:
+            return self._waiting
+
     @contextmanager
     def writing(self) -> Iterator[Session]:
         """Give a session that may write; what it wrote is on the disk when the block has ended."""
@@ -96,6 +102,7 @@ class GroupCommit:
             group.connection.commit()
         except BaseException as error:
             group.error = error
+            group.connection.invalidate(error)  # whatever is left of it goes with the connection
         finally:
             group.connection.close()
             group.ended.set()

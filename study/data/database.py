@@ -50,7 +50,7 @@ class Database:
         self.cache: dict[int, Any] = {}
         self.recent: dict[int, tuple[float, Any]] = {}
         self._reading_engine = reading_engine(engine)
-        self._group = GroupCommit(engine) if engine.dialect.name == "sqlite" else None
+        self.group = GroupCommit(engine) if engine.dialect.name == "sqlite" else None
         self._session: ContextVar[tuple[Session, bool] | None] = ContextVar("session", default=None)
 
     @contextmanager
@@ -65,7 +65,7 @@ class Database:
 
         What was written is on the disk when the outermost block has ended.
         """
-        own = self._group.writing() if self._group else _alone(self.engine)
+        own = self.group.writing() if self.group else _alone(self.engine)
         with self._joined(own, is_writing=True) as session:
             yield session
 
