@@ -29,11 +29,14 @@ def lod_order(ratings: pd.DataFrame) -> list[str]:
 
 
 def lod_ranks(ratings: pd.DataFrame) -> dict[str, float]:
-    """Return each LoD's rank; -1, below all others, for those without one."""
+    """Return each LoD's rank; -1, below all others, for those without one.
+
+    The standard LoDs have theirs even where nobody rated them.
+    """
+    standard = {name: float(rank) for rank, name in enumerate(STANDARD_LODS)}
     rows = ratings.drop_duplicates("lod")
-    return {
-        str(lod): float(r) for lod, r in zip(rows["lod"], rows["lod_rank"].fillna(-1), strict=True)
-    }
+    own = zip(rows["lod"], rows["lod_rank"].fillna(-1), strict=True)
+    return standard | {str(lod): float(rank) for lod, rank in own}
 
 
 def natural(name: object) -> tuple[tuple[int, int | str], ...]:

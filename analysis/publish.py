@@ -19,7 +19,11 @@ from analysis.chart_style import SIMULATED, figure_bytes
 from analysis.charts import CHARTS
 from analysis.correlation import person_concordance
 from analysis.cost import Costs, read_bench
+from analysis.decision.sentences import answer
+from analysis.decision.verdicts import DEFAULT, Margins
 from analysis.descriptive import answered, differences_from_best, mean_ratings
+from analysis.inference import Inference, infer
+from analysis.inference_tables import inference_tables
 from analysis.limits import limits
 from analysis.methods import methods
 from analysis.quality import missing_answers, people_overview, quality_statements
@@ -31,9 +35,10 @@ REPORT = "report.html"
 
 @dataclass(frozen=True)
 class Summary:
-    """What an analysis found and wrote; ``findings`` are the answer, ``limits`` its limits."""
+    """What an analysis found and wrote; ``findings`` describe, ``verdicts`` decide, by distance."""
 
     findings: tuple[Finding, ...]
+    verdicts: tuple[tuple[str, str], ...]
     limits: tuple[str, ...]
     design: tuple[str, ...]
     quality: tuple[str, ...]
@@ -45,16 +50,23 @@ class Summary:
 
     def lines(self) -> list[str]:
         """Return the answer as lines of plain text for a terminal."""
-        answer = [f"{finding.distance}: {finding.sentence}" for finding in self.findings]
+        decided = [f"{distance}: {sentence}" for distance, sentence in self.verdicts]
+        described = [f"{finding.distance}: {finding.sentence}" for finding in self.findings]
         label = [SIMULATED] if self.is_simulated else []
-        return [*label, *(answer if self.ratings else self.limits[:1])]
+        return [*label, *((decided or described) if self.ratings else self.limits[:1])]
 
 
-def analyse(tables: Tables, out: str | Path, *, bench: str | Path | None = None) -> Summary:
+def analyse(
+    tables: Tables,
+    out: str | Path,
+    *,
+    bench: str | Path | None = None,
+    margins: Margins = DEFAULT,
+) -> Summary:
     """Write every chart, table and the report into the folder ``out`` and return the findings.
 
-    ``bench`` is the path of ``bench.json``, which adds what each LoD costs. Raises TableError for
-    its faults, before anything is written.
+    ``bench`` is the path of ``bench.json``, which adds what each LoD costs; ``margins`` are what
+    counts as no loss. Raises TableError for its faults, before anything is written.
     """
     costs = read_bench(bench) if bench is not None else None
     folder = Path(out)
@@ -62,16 +74,19 @@ def analyse(tables: Tables, out: str | Path, *, bench: str | Path | None = None)
     audit = audit_design(shown_clips(tables.ratings, tables.comparisons))
     rated = answered(tables.ratings)
     found = tuple(findings(tables, costs))
+    inference = infer(tables, margins=margins)
     files: dict[str, bytes] = {}
     for chart in CHARTS:
         figure = chart.draw(tables)
         files |= {f"{chart.name}.{kind}": figure_bytes(figure, kind) for kind in ("svg", "png")}
         files[f"{chart.name}.csv"] = _csv(chart.table(tables), tables)
-    for name, table in _more_tables(tables, audit, costs, found).items():
+    more = _more_tables(tables, audit, costs, found) | inference.tables()
+    for name, table in more.items():
         files[f"{name}.csv"] = _csv(table, tables)
     summary = Summary(
         findings=found,
-        limits=tuple(limits(tables, audit)),
+        verdicts=tuple((own.distance, answer(own)) for own in inference.decisions),
+        limits=(*limits(tables, audit), *inference.warnings()),
         design=tuple(audit.facts()),
         quality=tuple(quality_statements(tables)),
         is_simulated=tables.is_simulated,
@@ -80,7 +95,9 @@ def analyse(tables: Tables, out: str | Path, *, bench: str | Path | None = None)
         report=folder / REPORT,
         files=tuple(folder / name for name in [*sorted(files), REPORT]),
     )
-    files[REPORT] = _report(tables, summary, files, audit=audit, costs=costs).encode()
+    files[REPORT] = _report(
+        tables, summary, files, audit=audit, costs=costs, inference=inference
+    ).encode()
     for name, content in files.items():
         (folder / name).write_bytes(content)
     return summary
@@ -128,6 +145,7 @@ def _report(
     *,
     audit: Audit,
     costs: Costs | None,
+    inference: Inference,
 ) -> str:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
@@ -149,7 +167,7 @@ def _report(
             }
             for chart in CHARTS
         ],
-        tables=report_tables(tables, costs),
+        tables=[*inference_tables(inference), *report_tables(tables, costs)],
         design_table=design_table(audit),
         quality_tables=quality_tables(tables),
         methods=methods(tables, costs),

@@ -81,9 +81,16 @@ class Noticing:
 
 
 def noticing_of(
-    comparisons: pd.DataFrame, ratings: pd.DataFrame, rng: np.random.Generator
+    comparisons: pd.DataFrame,
+    ratings: pd.DataFrame,
+    rng: np.random.Generator,
+    *,
+    weights: dict[str, float] | None = None,
 ) -> Noticing | None:
-    """Fit the model to the answers that count; None without answers to pairs of equal LoDs."""
+    """Fit the model to the answers that count; None without answers to pairs of equal LoDs.
+
+    ``weights`` let a participant count for less than one.
+    """
     rows = comparisons[comparisons["noticed"].notna() & ~comparisons["is_practice"]]
     is_catch = (rows["left_lod"] == rows["right_lod"]).to_numpy()
     if not is_catch.any() or is_catch.all():
@@ -99,7 +106,7 @@ def noticing_of(
             rows["distance"], rows["left_lod"], rows["right_lod"], strict=True
         )
     ]
-    order = {name: i for i, name in enumerate(distance_order(ratings))}
+    order = {name: i for i, name in enumerate(distance_order(pd.concat([ratings, rows])))}
     pairs: list[Pair] = sorted(
         {pair for pair in named if pair is not None},
         key=lambda pair: (order[pair[0]], by_rank(pair[1]), by_rank(pair[2])),
@@ -111,6 +118,7 @@ def noticing_of(
     counts = count_answers(who, own, grade.astype(int), shape=(len(people), len(pairs) + 1, 3))
     design = np.vstack([np.zeros(len(pairs)), np.eye(len(pairs))])
     model = OrdinalModel(Linear(design, tuple(" ".join(pair) for pair in pairs)), 3, (LENIENCY,))
-    found = fit(model, counts, priors=PRIORS)
+    often = np.array([(weights or {}).get(str(who), 1.0) for who in people])
+    found = fit(model, counts, priors=PRIORS, weights=often if weights else None)
     draws = draw(found, rng, people=len(people))
     return Noticing(found, draws, tuple(pairs), int(is_catch.sum()))

@@ -110,7 +110,7 @@ def preference_of(
     pairs = rows.assign(stimulus=own).drop_duplicates("stimulus").sort_values("stimulus")[keys]
     ranks = lod_ranks(ratings)
     linked = _references(pairs, ranks)
-    order = {name: i for i, name in enumerate(distance_order(ratings))}
+    order = {name: i for i, name in enumerate(distance_order(pd.concat([ratings, rows])))}
     cells = sorted(linked, key=lambda cell: (order[cell[0]], ranks.get(cell[1], -1.0), cell[1]))
     free = [cell for cell in cells if linked[cell] != cell]
     who, people = pd.factorize(rows["participant"])

@@ -11,6 +11,7 @@ from analysis.models.fitting import OrdinalFit
 
 Floats = NDArray[np.float64]
 DRAWS: Final = 4000
+_FARTHEST: Final = 50.0  # on the latent scale nothing lies there; logarithms stay numbers
 
 
 def draw(found: OrdinalFit, rng: np.random.Generator, *, people: int) -> Floats:
@@ -19,6 +20,5 @@ def draw(found: OrdinalFit, rng: np.random.Generator, *, people: int) -> Floats:
     values, vectors = np.linalg.eigh(found.covariance)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     normal = rng.standard_normal((DRAWS, len(values))) @ root.T
-    return np.asarray(
-        found.parameters + normal / np.sqrt(rng.chisquare(freedom, (DRAWS, 1)) / freedom)
-    )
+    away = normal / np.sqrt(rng.chisquare(freedom, (DRAWS, 1)) / freedom)
+    return np.asarray(np.clip(found.parameters + away, -_FARTHEST, _FARTHEST))
