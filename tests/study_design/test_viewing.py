@@ -137,3 +137,9 @@ def test_the_shown_scale_is_the_last_plays_and_varies_with_the_plays() -> None:
     changed = scale_shown([1.0, 0.8], width_px=1280)
     assert changed is not None
     assert (changed.value, round(changed.se, 3)) == (0.8, 0.1)
+
+
+def test_a_small_laptop_reaches_beyond_a_metre() -> None:
+    # 1366 pixels on 309 mm, mark and dot 24 pixels from either end: twice what a chair needs.
+    half = (1366 / 2 - 24) * 309 / 1366
+    assert distance_of(half + LEFT_EYE_MM, LEFT_EYE_MM - half) == pytest.approx(1240, abs=20)
