@@ -1,6 +1,6 @@
-"""Who is asking: a participant by a secret cookie, a researcher by a signed one.
+"""Which participant is asking: by the secret in their cookie, or a name that this site has signed.
 
-Posts of either must carry the token of their cookie; without it a foreign page could act for them.
+Their posts must carry the token of their cookie; without it a foreign page could act for them.
 """
 
 from __future__ import annotations
@@ -8,27 +8,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Final
 
-from fastapi import Depends, Header, Request
+from fastapi import Depends, Request
 from fastapi.responses import RedirectResponse, Response
 
-from study.data import participants, progress, researchers, studies
+from study.data import participants, progress, studies
 from study.data.participants import Participant
 from study.data.progress import Step
-from study.data.refusals import WithdrawnError
 from study.data.studies import Study
 from study.site.forms import first, read_form
 from study.site.place import Here
 from study.site.signatures import (
     csrf_token,
     is_csrf_token,
-    read_outbox,
     read_participant,
-    read_researcher,
     sign_outbox,
 )
 
 PARTICIPANT_COOKIE: Final = "ocularist_participant"
-RESEARCHER_COOKIE: Final = "ocularist_researcher"
 REMEMBER_S: Final = 60 * 24 * 3600
 WITHDRAWN: Final = "withdrawn"
 """What the participant's cookie says where somebody withdrew: nobody's token."""
@@ -141,35 +137,6 @@ async def a_visitor(request: Request, visitor: MaybeVisitor) -> Visitor:
 AVisitor = Annotated[Visitor, Depends(a_visitor)]
 
 
-def reporter(
-    request: Request,
-    here: Here,
-    visitor: MaybeVisitor,
-    x_csrf_token: Annotated[str, Header()] = "",
-    x_ocularist_outbox: Annotated[str, Header()] = "",
-) -> Visitor:
-    """Return whose entry a browser delivers: whom the outbox names, else whom the cookie does.
-
-    An outbox keeps its owner's name, so that what waited in it arrives even when somebody else has
-    begun in that browser since. Raises WithdrawnError for an owner who is gone.
-    """
-    if x_ocularist_outbox:
-        name = read_outbox(here.secret, x_ocularist_outbox)
-        if name is None:
-            raise ForgedError
-        participant = participants.by_name(here.db, name)
-        if participant is None:
-            raise WithdrawnError("this participant has withdrawn; nothing more is stored")
-        return as_visitor(request, here, participant, "")
-    if visitor is None:
-        raise ElsewhereError("/")
-    check_csrf(here.secret, visitor.token, x_csrf_token)
-    return visitor
-
-
-Reporter = Annotated[Visitor, Depends(reporter)]
-
-
 async def visitors_form(request: Request, here: Here, visitor: AVisitor) -> dict[str, list[str]]:
     """Return a participant's posted form if it is truly theirs."""
     fields = await read_form(request)
@@ -221,42 +188,3 @@ def remember(request: Request, response: Response, name: str, value: str, max_ag
         samesite="lax",
         secure=request.url.scheme == "https",
     )
-
-
-@dataclass(frozen=True)
-class SignedIn:
-    """A researcher as a page sees them."""
-
-    researcher: researchers.Researcher
-    csrf: str
-    cookie: str
-
-    @property
-    def name(self) -> str:
-        """The name that they sign in with."""
-        return self.researcher.name
-
-
-def signed_in(request: Request, here: Here) -> SignedIn:
-    """Return the researcher whose cookie the request carries; others are led to the door."""
-    cookie = request.cookies.get(RESEARCHER_COOKIE, "")
-    found = read_researcher(here.secret, cookie)
-    researcher = None if found is None else researchers.by_id(here.db, found)
-    if researcher is None:
-        raise ElsewhereError("/researcher/sign-in")
-    return SignedIn(researcher, csrf_token(here.secret, cookie), cookie)
-
-
-ResearcherHere = Annotated[SignedIn, Depends(signed_in)]
-
-
-async def researchers_form(
-    request: Request, here: Here, researcher: ResearcherHere
-) -> dict[str, list[str]]:
-    """Return a researcher's posted form if it is truly theirs."""
-    fields = await read_form(request)
-    check_csrf(here.secret, researcher.cookie, first(fields, "csrf"))
-    return fields
-
-
-ResearchersForm = Annotated[dict[str, list[str]], Depends(researchers_form)]

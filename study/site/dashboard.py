@@ -14,8 +14,9 @@ from study.data.quality import quality
 from study.data.studies import Study
 from study.design.arms import Arm
 from study.design.certificate import REASONS
-from study.site.access import ResearcherHere, ResearchersForm, SignedIn, redirect
+from study.site.access import redirect
 from study.site.place import Here
+from study.site.signed_in import ResearcherHere, ResearchersForm, SignedIn
 
 router = APIRouter(default_response_class=HTMLResponse)
 STEP_WORDS: Final = {

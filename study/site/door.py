@@ -10,14 +10,13 @@ from fastapi.responses import HTMLResponse, Response
 from study.data import researchers
 from study.data.researchers import MustWaitError
 from study.site.access import (
-    RESEARCHER_COOKIE,
-    ResearchersForm,
     redirect,
     remember,
 )
 from study.site.forms import first, read_form
 from study.site.place import Here
 from study.site.signatures import SIGN_IN_S, sign_researcher
+from study.site.signed_in import RESEARCHER_COOKIE, ResearchersForm
 
 router = APIRouter(default_response_class=HTMLResponse)
 

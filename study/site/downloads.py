@@ -14,9 +14,9 @@ from fastapi.responses import HTMLResponse, Response
 from study.data import export, researchers
 from study.data.export import Tables, csv_of
 from study.data.studies import Study
-from study.site.access import ResearcherHere
 from study.site.dashboard import frame
 from study.site.place import Here
+from study.site.signed_in import ResearcherHere
 
 router = APIRouter()
 FILES: Final[dict[str, tuple[str, Callable[[Tables], str]]]] = {

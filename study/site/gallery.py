@@ -15,10 +15,10 @@ from renderer.manifest import ClipRecord
 from study.data import jobs
 from study.data.jobs import Job
 from study.design.definition import WantedClip
-from study.site.access import ResearcherHere
 from study.site.dashboard import frame
 from study.site.media import clip_url
 from study.site.place import Here
+from study.site.signed_in import ResearcherHere
 
 router = APIRouter(default_response_class=HTMLResponse)
 

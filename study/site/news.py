@@ -15,10 +15,11 @@ from study.data import answers, events, trials, views
 from study.design.certificate import judge
 from study.design.questions import AnswerError, read_answers
 from study.site.about import DRAFTED, questions_about
-from study.site.access import Reporter, Visitor
+from study.site.access import Visitor
 from study.site.language import language_of
 from study.site.media import to_expect
 from study.site.place import Here
+from study.site.reporter import Reporter
 from study.texts import catalogue
 
 router = APIRouter()

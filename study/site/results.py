@@ -19,10 +19,11 @@ from study.data import export, researchers
 from study.data.database import Database
 from study.data.researchers import RESULTS_HIDDEN, RESULTS_SHOWN
 from study.data.studies import Study
-from study.site.access import ResearcherHere, ResearchersForm, SignedIn, redirect
+from study.site.access import redirect
 from study.site.dashboard import frame
 from study.site.forms import first
 from study.site.place import Here, Place
+from study.site.signed_in import ResearcherHere, ResearchersForm, SignedIn
 
 if TYPE_CHECKING:
     from analysis import Tables
