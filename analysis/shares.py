@@ -57,7 +57,7 @@ def pair_comparison_shares(comparisons: pd.DataFrame) -> pd.DataFrame:
     Columns: distance, lesser, greater, answer (one of PAIR_OUTCOMES), count, total, share, low,
     high, people.
     """
-    rows = _paired(_counted(comparisons, "comparison"))
+    rows = paired(_counted(comparisons, "comparison"))
     toward = rows["comparison"].where(rows["greater_is_right"], -rows["comparison"])
     return _shares(rows.assign(answer=_named(toward, PAIR_OUTCOMES)), _PAIR, PAIR_OUTCOMES)
 
@@ -73,7 +73,7 @@ def pair_notice_shares(comparisons: pd.DataFrame) -> pd.DataFrame:
 
     Pairs of equal LoDs (catch trials) are pairs too: their yes are false alarms.
     """
-    rows = _paired(_counted(comparisons, "noticed"), with_equal=True)
+    rows = paired(_counted(comparisons, "noticed"), with_equal=True)
     return _shares(rows.assign(answer=rows["noticed"]), _PAIR, NOTICED)
 
 
@@ -93,8 +93,11 @@ def _rank(lods: pd.Series) -> pd.Series:
     return lods.map({lod: i for i, lod in enumerate(STANDARD_LODS)}).astype(float)
 
 
-def _paired(rows: pd.DataFrame, *, with_equal: bool = False) -> pd.DataFrame:
-    """Name the lesser and the greater LoD; pairs without ranks go by name."""
+def paired(rows: pd.DataFrame, *, with_equal: bool = False) -> pd.DataFrame:
+    """Add to comparisons the lesser and the greater LoD and whether the greater is on the right.
+
+    Pairs without ranks go by name; pairs of equal LoDs are left out unless asked for.
+    """
     if not with_equal:
         rows = rows[(rows["left_lod"] != rows["right_lod"]).astype(bool)]
     left, right = _rank(rows["left_lod"]), _rank(rows["right_lod"])
