@@ -215,6 +215,10 @@ def walk_to_the_clips(tour: Tour) -> None:
     """Look at every page before the clips."""
     page = tour.page
     tour.look("landing", "/")
+    expect(page.locator(".when-less-motion")).to_be_hidden()
+    page.emulate_media(reduced_motion="reduce")
+    expect(page.locator(".when-less-motion")).to_be_visible()
+    page.emulate_media(reduced_motion="no-preference")
     tour.look("declined", "/declined")
     tour.look("problem", "/no-such-page")
     tour.look("consent", "/consent")

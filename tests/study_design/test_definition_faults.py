@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from study.design.definition import parse_definition, read_definition
-from study.design.faults import DefinitionError
+from study.design.faults import KINDS, DefinitionError
 
 Raw = dict[str, Any]
 Change = Callable[[Raw], object]
@@ -120,11 +120,11 @@ CASES: list[tuple[Change, str]] = [
     (lambda raw: raw.update(title="  "), "title: empty; write some text or leave the key out"),
     (
         lambda raw: raw["questions"][0].pop("kind"),
-        "questions.0.kind: missing; choose one of choice, multiple, scale, analogue, number, text, matrix",
+        f"questions.0.kind: missing; choose one of {', '.join(KINDS)}",
     ),
     (
         lambda raw: raw["about"][0].update(kind="numbre"),
-        'about.0.kind: unknown kind "numbre"; choose one of choice, multiple, scale, analogue, number, text, matrix; did you '
+        f'about.0.kind: unknown kind "numbre"; choose one of {", ".join(KINDS)}; did you '
         'mean "number"?',
     ),
     (
