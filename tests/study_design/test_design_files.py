@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ def written(folder: Path, scene: dict[str, Any]) -> StudyDefinition:
     """Read the thesis's study with another [scene], as a file in a folder."""
     folder.mkdir(exist_ok=True)
     text = Path("study/design/definitions/thesis.toml").read_text(encoding="utf-8")
+    text = re.sub(r"^translations = .*\n", "", text, flags=re.MULTILINE)  # they lie elsewhere
     before, after = text.split("[scene]")
     keys = "\n".join(f"{key} = {json.dumps(value)}" for key, value in scene.items())
     (folder / "study.toml").write_text(
