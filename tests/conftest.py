@@ -83,6 +83,6 @@ def database_url(
         return
     server: TemporaryServer = request.getfixturevalue("postgresql")
     name = f"test_{next(_numbers)}"
-    server.execute(f"CREATE DATABASE {name} TEMPLATE empty")
+    server.execute(f"CREATE DATABASE {name} TEMPLATE empty STRATEGY file_copy")
     yield server.url(name)
     server.execute(f"DROP DATABASE {name} WITH (FORCE)")

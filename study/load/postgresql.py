@@ -10,16 +10,21 @@ import os
 import pwd
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Literal
+
+from study.commands.starting import ending_with_parent
 
 ACCOUNT: Final = "ocularist"
 DEBIAN: Final = Path("/usr/lib/postgresql")
 UNPRIVILEGED: Final = ("postgres", "nobody")
+UP_S: Final = 120
 STOP_S: Final = 30
 MISSING: Final = (
     "PostgreSQL's server is not installed here (no initdb in /usr/lib/postgresql/*/bin or on the "
@@ -43,6 +48,7 @@ class TemporaryServer:
     more: Sequence[str] = ()
     parent: Path | None = None
     folder: Path = field(init=False)
+    process: subprocess.Popen[bytes] | None = None
     _programs: Path = field(init=False)
 
     def __enter__(self) -> TemporaryServer:
@@ -51,10 +57,7 @@ class TemporaryServer:
         try:
             if (owner := _owner()) is not None:
                 os.chown(self.folder, owner.pw_uid, owner.pw_gid)
-            self._call(
-                "initdb", "--pgdata", self._data, "--username", ACCOUNT, "--auth", "trust",
-                "--encoding", "UTF8", "--locale", "C", "--no-sync",
-            )  # fmt: skip
+            self._initialise()
             self.start()
         except BaseException:
             self._forget()
@@ -66,19 +69,49 @@ class TemporaryServer:
         self._forget()
 
     def start(self) -> None:
-        """Start the server; returns once it answers."""
+        """Start the server, which ends with this process at the latest; returns once it answers."""
         settings = [f"unix_socket_directories={self.folder}", "listen_addresses=", *self.more]
         if not self.is_durable:
             settings += ["fsync=off", "full_page_writes=off", "synchronous_commit=off"]
-        options = " ".join(f"-c {setting}" for setting in settings)
-        log = str(self.folder / "log")
-        self._call(
-            "pg_ctl", "start", "--wait", "--silent", "-D", self._data, "-l", log, "-o", options
-        )
+        options = [part for setting in settings for part in ("-c", setting)]
+        with (self.folder / "log").open("ab") as log:
+            self.process = subprocess.Popen(
+                [self._programs / "postgres", "-D", self._data, *options],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,  # Ctrl-C reaches its keeper alone
+                preexec_fn=ending_with_parent(),  # noqa: PLW1509 - as for our other processes
+                **self._account,
+            )
+        deadline = time.monotonic() + UP_S
+        while not self._answers():
+            if self.process.poll() is not None or time.monotonic() > deadline:
+                self.stop("immediate")
+                last = (self.folder / "log").read_text(errors="replace")[-500:]
+                raise NoServerError(f"PostgreSQL did not start: {' '.join(last.split())}")
+            time.sleep(0.05)
 
-    def stop(self, mode: str = "fast") -> None:
+    def stop(self, mode: Literal["fast", "immediate"] = "fast") -> None:
         """Stop the server; "immediate" is what a crash is to it."""
-        self._call("pg_ctl", "stop", "--wait", "--silent", "-D", self._data, "--mode", mode)
+        if self.process is None:
+            return
+        self.process.send_signal(signal.SIGINT if mode == "fast" else signal.SIGQUIT)
+        try:
+            self.process.wait(STOP_S)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.process = None
+
+    def _answers(self) -> bool:
+        import psycopg
+
+        try:
+            self.execute()
+        except psycopg.OperationalError:
+            return False
+        return True
 
     def url(self, database: str = "postgres") -> str:
         """Return SQLAlchemy's address of one of its databases."""
@@ -97,27 +130,32 @@ class TemporaryServer:
     def _data(self) -> str:
         return str(self.folder / "data")
 
-    def _call(self, program: str, *arguments: str) -> None:
+    @property
+    def _account(self) -> dict[str, Any]:
+        """Whom to run as: PostgreSQL refuses to run as root."""
         owner = _owner()
-        account: dict[str, Any] = {}
-        if owner is not None:  # PostgreSQL refuses to run as root
-            account = {"user": owner.pw_uid, "group": owner.pw_gid, "extra_groups": []}
+        return {
+            "cwd": self.folder,
+            "env": {"PATH": os.environ.get("PATH", ""), "LC_ALL": "C"},
+            **(
+                {}
+                if owner is None
+                else {"user": owner.pw_uid, "group": owner.pw_gid, "extra_groups": []}
+            ),
+        }
+
+    def _initialise(self) -> None:
+        options = ["--auth", "trust", "--encoding", "UTF8", "--locale", "C", "--no-sync"]
         done = subprocess.run(
-            [self._programs / program, *arguments],
-            cwd=self.folder,
-            env={"PATH": os.environ.get("PATH", ""), "LC_ALL": "C"},
-            stdin=subprocess.DEVNULL,
-            # A file and not a pipe: the server keeps it open for as long as it lives.
-            stdout=(out := (self.folder / "said").open("w+")),
-            stderr=subprocess.STDOUT,
+            [self._programs / "initdb", "-D", self._data, "--username", ACCOUNT, *options],
+            capture_output=True,
+            text=True,
             check=False,
-            **account,
+            **self._account,
         )
-        out.seek(0)
-        said = out.read()
-        out.close()
         if done.returncode:
-            raise NoServerError(f"PostgreSQL's {program} failed: {' '.join(said.split())[-500:]}")
+            said = " ".join((done.stdout + done.stderr).split())[-500:]
+            raise NoServerError(f"PostgreSQL's initdb failed: {said}")
 
     def _forget(self) -> None:
         shutil.rmtree(self.folder, ignore_errors=True)

@@ -22,6 +22,7 @@ from typing import Final
 from renderer.clip import ClipSpec
 from renderer.manifest import ClipRecord, Manifest, write_manifest
 from renderer.sources import code_version
+from study.commands.starting import ending_with_parent
 from study.data import jobs, studies
 from study.data.database import Database, open_database
 from study.data.studies import Study
@@ -100,6 +101,7 @@ class LoadedSite:
                 stdout=log,
                 stderr=log,
                 start_new_session=True,
+                preexec_fn=ending_with_parent(),  # noqa: PLW1509 - as for our other processes
             )
 
     async def wait(self) -> None:
