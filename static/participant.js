@@ -52,7 +52,7 @@ function goElsewhere() {
   close();
   close = () => {};
   const notice = document.querySelector("[data-elsewhere]");
-  for (const part of document.querySelectorAll("header, main")) part.hidden = true;
+  document.querySelector("main").hidden = true; // the strip stays: one can stop from any tab
   notice.hidden = false;
   notice.querySelector("[data-here]").addEventListener("click", () => {
     currentSession({}).tab.take();

@@ -47,6 +47,7 @@ def test_a_second_tab_is_told_to_use_one(
     heading = second.get_by_role("heading", name=ELSEWHERE)
     expect(heading).to_be_focused()
     expect(second.get_by_role("button", name="Play the clip")).to_be_hidden()
+    expect(second.get_by_role("link", name="Stop")).to_be_in_viewport(ratio=1)
 
     # Both go on: the first with its clip, and the second, once it is asked to, with all of it.
     visit.watch()
