@@ -40,6 +40,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="only tell the trials of one participant again, in order: the order_code of "
         "participants.csv",
     )
+    parser.add_argument(
+        "--translation",
+        metavar="LANGUAGE",
+        help="only write a file to translate: every text that participants read, in its place",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -48,7 +53,12 @@ def run(options: argparse.Namespace) -> int:
 
     definition = read_definition(options.study)
     check_pictures(definition)
-    if options.order is not None:
+    lines: Iterable[str]
+    if options.translation is not None:
+        from study.design.translation_file import translation_lines
+
+        lines = translation_lines(definition, options.translation)
+    elif options.order is not None:
         lines = order_lines(definition, options.order)
     else:
         exposures = exposure_lines(definition, options.people)

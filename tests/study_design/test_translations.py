@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from study.cli import main
 from study.design.definition import (
     DefinitionError,
     StudyDefinition,
@@ -14,7 +16,8 @@ from study.design.definition import (
     parse_definition,
     read_definition,
 )
-from study.design.translations import texts_of
+from study.design.translation_file import translation_lines
+from study.design.translations import texts_of, translated, translation_faults
 
 ROWS = [{"id": "iris", "label": "Iris"}, {"id": "white", "label": "White"}]
 MATRIX = {
@@ -137,3 +140,31 @@ def test_a_translation_tells_a_study_from_the_one_without(bilingual: dict[str, A
     silent = parse_definition(source | {"translations": {}})
     assert silent.definition_hash == parse_definition(source).definition_hash
     assert parse_definition(bilingual).definition_hash != silent.definition_hash
+
+
+@pytest.mark.parametrize("name", built_in_names())
+def test_the_file_to_translate_holds_every_text_and_nothing_else(name: str) -> None:
+    definition = read_definition(name)
+    for language in ("fr", "ar"):
+        written = tomllib.loads("\n".join(translation_lines(definition, language)))
+        assert list(translation_faults(definition, written, "fr")) == []
+        french = translated(definition, written, "fr")
+        expected = definition.in_language(language)
+        assert {p: t.words for p, t in texts_of(french)} == {
+            p: t.words for p, t in texts_of(expected)
+        }
+
+
+def test_the_file_to_translate_quotes_what_has_to_be_quoted(raw: dict[str, Any]) -> None:
+    raw["title"] = 'Say "eye" \\ now\nand\tthen'
+    raw["questions"].append(MATRIX)
+    definition = parse_definition(raw)
+    written = tomllib.loads("\n".join(translation_lines(definition, "de")))
+    assert written["title"] == raw["title"]
+    assert written["questions"]["real"]["labels"] == list("abcde")
+
+
+def test_check_writes_the_file_to_translate(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "thesis", "--translation", "ar"]) == 0
+    written = tomllib.loads(capsys.readouterr().out)
+    assert written["thanks"]["title"] == "شكرًا لك"
