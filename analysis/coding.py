@@ -112,7 +112,8 @@ def mentions(comparisons: pd.DataFrame, manual: ManualCodes | None = None) -> pd
     flags = {name: [name in codes for codes in own] for name in CODE_NAMES}
     by = ["distance", "lesser", "greater", "participant"]
     table = rows[by].reset_index(drop=True).assign(**flags)
-    return table.groupby(by, sort=False, observed=True)[list(CODE_NAMES)].any().reset_index()
+    found = table.groupby(by, sort=False, observed=True)[list(CODE_NAMES)].any().reset_index()
+    return found.reindex(columns=[*by, *CODE_NAMES])
 
 
 def mention_rates(comparisons: pd.DataFrame, manual: ManualCodes | None = None) -> pd.DataFrame:

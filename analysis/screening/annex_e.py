@@ -15,7 +15,13 @@ import numpy as np
 
 from analysis.screening.presented import Floats, Presented, sums
 
-FLOOR: Final = 0.15  # points; few ratings that fit by chance would take all weight otherwise
+FLOOR: Final = 0.15  # points
+PRIOR: Final = 4.0
+"""How many answers of ordinary scatter stand beside each person's own.
+
+Of 14 ratings some person's fit by chance; they would then take all weight and fit perfectly.
+"""
+
 _STEPS: Final = 1000
 _CLOSE: Final = 1e-8
 
@@ -34,8 +40,14 @@ class BiasModel:
     inconsistency: Floats
 
 
-def bias_and_inconsistency(shown: Presented, *, floor: float = FLOOR) -> BiasModel:
-    """Estimate quality, bias and inconsistency; ``floor`` is the least inconsistency, in points."""
+def bias_and_inconsistency(
+    shown: Presented, *, floor: float = FLOOR, prior: float = PRIOR
+) -> BiasModel:
+    """Estimate quality, bias and inconsistency.
+
+    ``floor`` is the least inconsistency, in points; ``prior`` how many answers of the people's
+    common scatter each person's own is drawn together with. The Annex itself has neither: 0, 0.
+    """
     n_people = len(shown.people)
     n_stimuli = int(shown.stimulus.max(initial=-1)) + 1
     per_person, u = shown.answers, shown.rating
@@ -45,7 +57,7 @@ def bias_and_inconsistency(shown: Presented, *, floor: float = FLOOR) -> BiasMod
     scatter = np.full(n_people, floor)
     for _ in range(_STEPS):
         before = quality
-        scatter = np.maximum(_scatter(shown, quality, bias), floor)
+        scatter = np.maximum(_scatter(shown, quality, bias, prior), floor)
         weight = (scatter**-2)[shown.person]
         quality = sums(shown.stimulus, weight * (u - bias[shown.person]), n_stimuli)
         quality /= sums(shown.stimulus, weight, n_stimuli)
@@ -57,10 +69,11 @@ def bias_and_inconsistency(shown: Presented, *, floor: float = FLOOR) -> BiasMod
     return BiasModel(quality + centre, error, bias - centre, scatter)
 
 
-def _scatter(shown: Presented, quality: Floats, bias: Floats) -> Floats:
+def _scatter(shown: Presented, quality: Floats, bias: Floats, prior: float) -> Floats:
     """Return the standard deviation of each person's residuals, as the Annex takes it."""
     rest = shown.rating - quality[shown.stimulus] - bias[shown.person]
     n_people = len(shown.people)
     mean = sums(shown.person, rest, n_people) / shown.answers
     square = sums(shown.person, (rest - mean[shown.person]) ** 2, n_people)
-    return np.asarray(np.sqrt(square / shown.answers))
+    common = square.sum() / max(shown.rating.size, 1)
+    return np.asarray(np.sqrt((square + prior * common) / (shown.answers + prior)))
