@@ -152,6 +152,7 @@ def test_the_keyboard_alone_leads_through_the_trials(visit: Any, site: Any, page
         expect(page.locator("[data-open-note]")).to_be_focused()
         tab_to(page, "Finish" if position == 3 else NEXT)
         page.keyboard.press("Enter")
+    expect(page).to_have_url(f"{site.url}/thanks")
     code = page.locator("#completion-code")
     expect(code).to_have_text(completion.code(site.db, site.people()[0]) or "no code")
     assert [answer(visit, position, "comparison") for position in (1, 2, 3)] == [1, 1, 1]

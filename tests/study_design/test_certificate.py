@@ -143,7 +143,9 @@ def test_the_rule_comes_from_the_study_file_and_is_checked() -> None:
     with pytest.raises(DefinitionError) as caught:
         parse_definition({**data, "certificate": {"max_dropped_share": 1.5, "max_gaps": 3}})
     text = str(caught.value)
-    assert "certificate.max_dropped_share: input should be less than or equal to 1; found 1.5" in text
+    assert (
+        "certificate.max_dropped_share: input should be less than or equal to 1; found 1.5" in text
+    )
     assert 'certificate.max_gaps: unknown key "max_gaps"; choose one of max_dropped_share' in text
 
 
