@@ -57,12 +57,16 @@ def tongue(language: str) -> Tongue:
 
 
 def first_spoken(wishes: Iterable[str], spoken: Sequence[str]) -> str | None:
-    """Return the first wish that is spoken, if only as a variant: "ar-EG" is served by "ar"."""
+    """Return the first wish that is spoken, if only as a wider one (RFC 4647, 3.4).
+
+    "ar-EG" is served by "ar".
+    """
     for wish in wishes:
-        lowered = wish.strip().lower()
-        for tag in (lowered, lowered.partition("-")[0]):
+        tag = wish.strip().lower()
+        while tag:
             if tag in spoken:
                 return tag
+            tag = tag.rpartition("-")[0]
     return None
 
 

@@ -132,6 +132,7 @@ def test_an_unknown_language_keeps_its_tag_and_runs_left_to_right() -> None:
         (["ar-EG", "en"], "ar"),
         (["fr", "AR"], "ar"),
         (["pt-BR"], "pt-br"),
+        (["pt-BR-x-any"], "pt-br"),
         (["pt"], None),
         ([], None),
     ],
