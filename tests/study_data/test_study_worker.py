@@ -293,7 +293,7 @@ SHARED = """
 import sys
 from pathlib import Path
 from conftest import fake_render
-from renderer.production import batch
+from renderer.production.folder import keep_record
 from renderer.manifest import read_manifest
 from study.data.database import open_database
 from study.worker import run_worker
@@ -305,7 +305,7 @@ def render(spec, folder, progress):
     alone = Path(sys.argv[3])
     record = fake_render(spec, alone, progress)
     (alone / record.file).rename(folder / record.file)
-    batch.keep_record(record, folder)
+    keep_record(record, folder)
     return record
 
 print(run_worker(open_database(sys.argv[1]), Path(sys.argv[2]), render=render, until_empty=True))
