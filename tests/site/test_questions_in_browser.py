@@ -138,6 +138,8 @@ def test_what_cannot_be_stored_is_told_beside_its_question(site: Any, page: Page
     page.get_by_label("A phone").check()
     page.get_by_label("How many hours a week?").fill("many")
     page.get_by_role("button", name="Continue").click()
+    page.get_by_role("alert").get_by_role("link", name="How many hours a week?").click()
+    expect(page).to_have_url(f"{site.url}/about-you#about-hours")
     field = page.get_by_label("How many hours a week?")
     expect(field).to_have_accessible_description(
         "Please enter a number from 0 to 168 with at most 1 decimal."
