@@ -57,7 +57,7 @@ def infer(
 ) -> Inference:
     """Fit every model that the tables allow and decide by the margins.
 
-    ``weights`` let a participant's ratings count for less than one.
+    ``weights`` let a participant's answers count for less than one.
     """
     rng = np.random.default_rng(SEED)
     people = {*tables.ratings["participant"], *tables.comparisons["participant"]}
@@ -68,8 +68,8 @@ def infer(
         realism = realism_of(
             tables.ratings, rng, scale=tables.scale, experts=_experts(tables), weights=weights
         )
-    preference = preference_of(tables.comparisons, tables.ratings, rng)
-    noticing = noticing_of(tables.comparisons, tables.ratings, rng)
+    preference = preference_of(tables.comparisons, tables.ratings, rng, weights=weights)
+    noticing = noticing_of(tables.comparisons, tables.ratings, rng, weights=weights)
     decided = (
         decide(realism, noticing, lod_ranks(tables.ratings), margins=margins) if realism else []
     )

@@ -34,7 +34,7 @@ def methods(tables: Tables, costs: Costs | None = None) -> list[str]:
         "and distance, r = sign(b) √(SSx / (SSx + SSe)), N − n − 1 degrees of freedom, interval by "
         "Fisher's z). Ratings at different distances were never ordered against each other.",
     ]
-    paragraphs += _models()
+    paragraphs += [*_models(), *_observers()]
     if costs is not None:
         paragraphs.append(
             f"Costs are median times per finished frame for {costs.condition}, from bench.json."
@@ -55,6 +55,19 @@ def _models() -> list[str]:
         "detection, with pairs of equal LoDs as its zero. All are fitted with weak normal priors "
         "(maximum of the posterior). Intervals are quantiles of 4000 draws from Student's t about "
         "the fit, with one degree of freedom less than there are people.",
+    ]
+
+
+def _observers() -> list[str]:
+    return [
+        "In the models a person counts for less than one where they were flagged (0.1) or where "
+        "their inconsistency exceeds 1.5 times the median, v (then (1.5 v / v_i)²). Bias and "
+        "inconsistency are those of ITU-T P.910 Annex E by alternating projection, with a floor of "
+        "0.15 points and, so that no small set of ratings fits by chance, four answers of the "
+        "common scatter added to each person's own. ICC(2,1) and ICC(2,k) follow Shrout and Fleiss "
+        "1979 with McGraw and Wong's intervals, alpha Krippendorff's ordinal metric with a "
+        "jackknife over people and a bootstrap over stimuli. What people wrote was coded by words; "
+        "a person counts once per pair of LoDs.",
     ]
 
 

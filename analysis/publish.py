@@ -17,6 +17,7 @@ from analysis.answer import Finding, findings
 from analysis.audit import Audit, audit_design, shown_clips
 from analysis.chart_style import SIMULATED, figure_bytes
 from analysis.charts import CHARTS
+from analysis.coding import read_codes
 from analysis.correlation import person_concordance
 from analysis.cost import Costs, read_bench
 from analysis.decision.sentences import answer
@@ -29,6 +30,14 @@ from analysis.methods import methods
 from analysis.quality import missing_answers, people_overview, quality_statements
 from analysis.reading import Tables
 from analysis.report_tables import design_table, quality_tables, report_tables
+from analysis.sections import (
+    Section,
+    claims_section,
+    observers_section,
+    reliability_section,
+    text_section,
+    weights_of,
+)
 
 REPORT = "report.html"
 
@@ -62,25 +71,32 @@ def analyse(
     *,
     bench: str | Path | None = None,
     margins: Margins = DEFAULT,
+    codes: str | Path | None = None,
 ) -> Summary:
     """Write every chart, table and the report into the folder ``out`` and return the findings.
 
     ``bench`` is the path of ``bench.json``, which adds what each LoD costs; ``margins`` are what
-    counts as no loss. Raises TableError for its faults, before anything is written.
+    counts as no loss; ``codes`` is a CSV file of remarks coded by hand. Raises
+    TableError for its faults, before anything is written.
     """
     costs = read_bench(bench) if bench is not None else None
+    manual = read_codes(codes) if codes is not None else None
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     audit = audit_design(shown_clips(tables.ratings, tables.comparisons))
     rated = answered(tables.ratings)
     found = tuple(findings(tables, costs))
-    inference = infer(tables, margins=margins)
+    inference = infer(tables, margins=margins, weights=weights_of(tables) or None)
+    findings_more = (claims_section(tables, manual), text_section(tables, manual))
+    people_more = (observers_section(tables, inference), reliability_section(tables))
     files: dict[str, bytes] = {}
     for chart in CHARTS:
         figure = chart.draw(tables)
         files |= {f"{chart.name}.{kind}": figure_bytes(figure, kind) for kind in ("svg", "png")}
         files[f"{chart.name}.csv"] = _csv(chart.table(tables), tables)
     more = _more_tables(tables, audit, costs, found) | inference.tables()
+    for section in (*findings_more, *people_more):
+        more |= section.data
     for name, table in more.items():
         files[f"{name}.csv"] = _csv(table, tables)
     summary = Summary(
@@ -96,7 +112,13 @@ def analyse(
         files=tuple(folder / name for name in [*sorted(files), REPORT]),
     )
     files[REPORT] = _report(
-        tables, summary, files, audit=audit, costs=costs, inference=inference
+        tables,
+        summary,
+        files,
+        audit=audit,
+        costs=costs,
+        inference=inference,
+        more=(findings_more, people_more),
     ).encode()
     for name, content in files.items():
         (folder / name).write_bytes(content)
@@ -146,6 +168,7 @@ def _report(
     audit: Audit,
     costs: Costs | None,
     inference: Inference,
+    more: tuple[tuple[Section, ...], tuple[Section, ...]],
 ) -> str:
     environment = Environment(
         loader=FileSystemLoader(Path(__file__).parent),
@@ -170,6 +193,8 @@ def _report(
         tables=[*inference_tables(inference), *report_tables(tables, costs)],
         design_table=design_table(audit),
         quality_tables=quality_tables(tables),
+        findings_more=more[0],
+        people_more=more[1],
         methods=methods(tables, costs),
         label=SIMULATED,
     )

@@ -96,11 +96,16 @@ class Preference:
 
 
 def preference_of(
-    comparisons: pd.DataFrame, ratings: pd.DataFrame, rng: np.random.Generator
+    comparisons: pd.DataFrame,
+    ratings: pd.DataFrame,
+    rng: np.random.Generator,
+    *,
+    weights: dict[str, float] | None = None,
 ) -> Preference | None:
     """Fit the scale to the comparisons that count; None where nobody compared different LoDs.
 
-    ``ratings`` tell the order of distances and the LoDs' ranks.
+    ``ratings`` tell the order of distances and the LoDs' ranks; ``weights`` let a participant count
+    for less than one.
     """
     rows = comparisons[comparisons["comparison"].notna() & ~comparisons["is_practice"]]
     if (rows["left_lod"] == rows["right_lod"]).all():
@@ -121,7 +126,8 @@ def preference_of(
     model = OrdinalModel(
         Linear(_design(pairs, free), names), 3, (LENIENCY, STYLE) if is_rich else ()
     )
-    found = fit(model, counts, priors=PRIORS)
+    often = np.array([(weights or {}).get(str(who), 1.0) for who in people])
+    found = fit(model, counts, priors=PRIORS, weights=often if weights else None)
     return Preference(
         fit=found,
         draws=draw(found, rng, people=len(people)),

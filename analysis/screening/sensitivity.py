@@ -11,7 +11,7 @@ from typing import Final
 
 import pandas as pd
 
-from analysis.decision.verdicts import Decision, verdict_table
+from analysis.decision.verdicts import Decision
 from analysis.reading import Tables
 
 Decide = Callable[[Tables, dict[str, float]], Sequence[Decision]]
@@ -25,25 +25,30 @@ def verdict_sensitivity(
     tables: Tables,
     flags: Mapping[str, Sequence[str]],
     *,
+    usual: Sequence[Decision],
     weights: Mapping[str, float],
     decide: Decide,
+    most: int = 12,
 ) -> pd.DataFrame:
     """Return every verdict as usual, unweighted, without each flagged person, and without all.
 
-    ``weights`` are those of the usual analysis. Columns: people (who was counted), flags (of the
+    ``usual`` are the decisions of the weighted analysis and ``weights`` its weights; ``decide``
+    repeats it for other tables and weights. Beyond ``most`` flagged people nobody is left out one
+    by one, because every row takes a fit. Columns: people (who was counted), flags (of the
     person left out), distance, lod, verdict, usual (the verdict of the weighted analysis) and
     is_moved. A person without whom nothing is left to decide has an empty verdict.
     """
-    usual = _verdicts(tables, weights, decide)
-    rows = _rows(WEIGHTED, "", usual, usual) + _rows(
-        UNWEIGHTED, "", _verdicts(tables, {}, decide), usual
-    )
-    for who, own in flags.items():
-        found = _verdicts(without(tables, [who]), weights, decide)
-        rows += _rows(f"without {who}", ", ".join(own), found, usual)
+    known = _named(usual)
+    rows = _rows(WEIGHTED, "", known, known)
+    rows += _rows(UNWEIGHTED, "", _named(decide(tables, {})), known)
+    alone = flags if len(flags) <= most else {}
+    for who, own in alone.items():
+        rest = without(tables, [who])
+        found = _named(decide(rest, _present(weights, rest)))
+        rows += _rows(f"without {who}", ", ".join(own), found, known)
     if len(flags) > 1:
-        found = _verdicts(without(tables, flags), weights, decide)
-        rows += _rows(NOBODY_FLAGGED, "", found, usual)
+        rest = without(tables, flags)
+        rows += _rows(NOBODY_FLAGGED, "", _named(decide(rest, _present(weights, rest))), known)
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
@@ -60,17 +65,16 @@ def without(tables: Tables, people: Iterable[str]) -> Tables:
 Verdicts = dict[tuple[str, str], str]
 
 
-def _verdicts(tables: Tables, weights: Mapping[str, float], decide: Decide) -> Verdicts:
-    present = set(tables.ratings["participant"].astype(str))
-    own = {who: weight for who, weight in weights.items() if who in present}
-    table = verdict_table(list(decide(tables, own)))
-    if table.empty:
-        return {}
+def _present(weights: Mapping[str, float], tables: Tables) -> dict[str, float]:
+    here = set(tables.ratings["participant"].astype(str))
+    return {who: weight for who, weight in weights.items() if who in here}
+
+
+def _named(decisions: Sequence[Decision]) -> Verdicts:
     return {
-        (str(distance), str(lod)): str(verdict)
-        for distance, lod, verdict in zip(
-            table["distance"], table["lod"], table["verdict"], strict=True
-        )
+        (decision.distance, verdict.lod): verdict.outcome
+        for decision in decisions
+        for verdict in decision.verdicts
     }
 
 

@@ -38,6 +38,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bench", type=Path, metavar="FILE.json", help="costs measured by ocularist bench"
     )
+    parser.add_argument(
+        "--codes",
+        type=Path,
+        metavar="FILE.csv",
+        help="remarks coded by hand: a report's remark-codes.csv, corrected",
+    )
 
 
 def run(options: argparse.Namespace) -> int:
@@ -46,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
 
     source = options.source
     tables = _from_database(source) if "://" in source else read_source(source)
-    summary = analyse(tables, options.out, bench=options.bench)
+    summary = analyse(tables, options.out, bench=options.bench, codes=options.codes)
     for line in summary.lines():
         print("\n".join(textwrap.wrap(line, WIDTH, break_on_hyphens=False)))
     print(summary.report)
