@@ -159,4 +159,13 @@ def test_make_lists_its_targets() -> None:
         check=True,
     )
     targets = [line.split()[0] for line in done.stdout.splitlines()]
-    assert targets == ["help", "study", "test", "test-long", "test-fresh", "lock", "clean"]
+    assert targets == [
+        "help",
+        "study",
+        "test",
+        "test-long",
+        "test-fresh",
+        "pictures",
+        "lock",
+        "clean",
+    ]
