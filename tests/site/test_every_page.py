@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, Page, Route, expect
+from playwright.sync_api import Browser, Error, Page, Route, expect
 from sqlalchemy import update
 
 from study.data import events
@@ -160,14 +160,28 @@ class Tour:
             self.faults.append(f"{here}: is in {shown}")
         if PICTURES:
             keep_picture(page, Path(PICTURES) / f"{name}.{language}.png")
-        page.evaluate(AXE)
-        for found in page.evaluate(RUN_AXE):
+        for found in self.violations():
             for node in found["nodes"]:
                 why = node["failureSummary"].replace("\n", " ")
                 self.faults.append(f"{here}: {found['id']}: {node['html'][:120]}: {why[:200]}")
         for size in (ZOOMED, NARROW):
             self.check_reflow(here, size)
         page.set_viewport_size(LAPTOP)
+
+    def violations(self) -> list[dict[str, Any]]:
+        """Return what axe finds. A page may load itself anew, where it takes the tab over again."""
+        for _ in range(5):
+            try:
+                expect(self.page.locator("[data-elsewhere]:visible")).to_have_count(0)
+                self.page.evaluate(AXE)
+                found: list[dict[str, Any]] = self.page.evaluate(RUN_AXE)
+            except Error as error:
+                if "context was destroyed" not in error.message:
+                    raise
+                self.page.wait_for_load_state()
+            else:
+                return found
+        raise AssertionError(f"{self.page.url} does not come to rest")
 
     def check_reflow(self, here: str, size: Any) -> None:
         """Nothing has to be scrolled sideways, however narrow the window."""
