@@ -6,7 +6,9 @@ import logging
 import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from typing import Final
 
+from anyio import to_thread
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse, PlainTextResponse, RedirectResponse, Response
@@ -45,6 +47,9 @@ from study.site.place import NoStudyError, Place
 from study.site.problems import problem_page
 
 log = logging.getLogger("ocularist.site")
+# Threads that answer requests. More of them only take the interpreter from each other, above all from
+# the one that writes: with 40 a crowd was answered half as fast (docs/load.md).
+THREADS: Final = 16
 FOR_SCRIPTS = ("/events", "/preparing/state")
 ROOMS = (
     beginning,
@@ -86,6 +91,7 @@ def create_app(settings: Settings, *, study_id: int | None = None) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
+        to_thread.current_default_thread_limiter().total_tokens = THREADS
         yield
         place.db.close()
 
