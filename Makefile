@@ -6,6 +6,8 @@ PYTHON := .venv/bin/python
 # make study STUDY=my-study.toml ARGS="--port 8080"
 STUDY ?=
 ARGS ?=
+# Processes that share the tests; each wants up to 3 GB.
+JOBS ?= 2
 
 help: ## show these lines
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -19,7 +21,7 @@ test: ## set up what is missing, then format, lint, types and tests
 	$(PYTHON) -m ruff format --check .
 	$(PYTHON) -m ruff check .
 	$(PYTHON) -m mypy
-	$(PYTHON) -m pytest -m "not long" $(ARGS)
+	$(PYTHON) -m pytest -m "not long" -n $(JOBS) --dist loadfile $(ARGS)
 
 test-long: ## the long simulations
 	@deploy/setup test
