@@ -47,8 +47,8 @@ from study.site.place import NoStudyError, Place
 from study.site.problems import problem_page
 
 log = logging.getLogger("ocularist.site")
-# Threads that answer requests. More of them only take the interpreter from each other, above all from
-# the one that writes: with 40 a crowd was answered half as fast (docs/load.md).
+# Threads that answer requests. More of them only take the interpreter from each other, above all
+# from the one that writes: with 40 a crowd was answered half as fast (docs/load.md).
 THREADS: Final = 16
 FOR_SCRIPTS = ("/events", "/preparing/state")
 ROOMS = (
