@@ -60,7 +60,7 @@ CODES: Final = (
     ),
     Code(
         "refraction",
-        "refraction: the pupil's size, depth, the cornea's bulge",
+        "the pupil's size, depth, the cornea's bulge",
         r"refract|pupil|depth|deep(?:er)?\b|bulg|cornea|lens|magnif|concave|convex|3[- ]?d\b",
         r"انكسار|بؤبؤ|حدقة|عمق|اعمق|قرنية|عدسة|مجسم|ثلاثي",
     ),

@@ -23,13 +23,17 @@ _MOST_PEOPLE: Final = 60
 
 @dataclass(frozen=True)
 class ReportTable:
-    """A table of texts; ``text_columns`` (from the left) are words, the others numbers."""
+    """A table of texts; ``text_columns`` (from the left) are words, the others numbers.
+
+    In a table of prose the words are sentences, which may wrap.
+    """
 
     caption: str
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     text_columns: int = 1
     note: str = ""
+    is_prose: bool = False
 
 
 def report_tables(tables: Tables, costs: Costs | None = None) -> list[ReportTable]:

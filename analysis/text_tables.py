@@ -68,6 +68,7 @@ def claims_report(claims: pd.DataFrame) -> ReportTable:
         ("claim", "the thesis (section)", "these data, with 95 % interval"),
         tuple(tuple(map(str, row)) for row in rows),
         text_columns=3,
+        is_prose=True,
         note="What the thesis said in words stands in words: the bar heights of its Figure 5.2 are "
         "unknown. Not asked here: this study showed no such clip, or asked no such question.",
     )

@@ -7,7 +7,7 @@ no number of them is used but the one in its text (low at far, 2.5).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import pandas as pd
@@ -51,7 +51,8 @@ class Claim:
 
 
 def _beyond_macroscopic(said: pd.DataFrame, code: str, pairs: tuple[tuple[str, str], ...]) -> Found:
-    return mentioned(said[said["distance"] != "macroscopic"], code, pairs)
+    found = mentioned(said[said["distance"] != "macroscopic"], code, pairs)
+    return replace(found, text=found.text.replace("mention it", "mention it beyond macroscopic"))
 
 
 CLAIMS: Final = (

@@ -41,12 +41,14 @@ class BiasModel:
 
 
 def bias_and_inconsistency(
-    shown: Presented, *, floor: float = FLOOR, prior: float = PRIOR
+    shown: Presented, *, floor: float = FLOOR, prior: float = PRIOR, corrected: bool = True
 ) -> BiasModel:
     """Estimate quality, bias and inconsistency.
 
     ``floor`` is the least inconsistency, in points; ``prior`` how many answers of the people's
-    common scatter each person's own is drawn together with. The Annex itself has neither: 0, 0.
+    common scatter each person's own is drawn together with; ``corrected`` allows for the share that
+    a person's own ratings have in the quality they are compared with. The Annex itself has none of
+    the three (0, 0, False): with few people one of them then takes all weight and fits exactly.
     """
     n_people = len(shown.people)
     n_stimuli = int(shown.stimulus.max(initial=-1)) + 1
@@ -54,10 +56,11 @@ def bias_and_inconsistency(
     per_stimulus = sums(shown.stimulus, np.ones_like(u), n_stimuli)
     quality = sums(shown.stimulus, u, n_stimuli) / per_stimulus
     bias = sums(shown.person, u - quality[shown.stimulus], n_people) / per_person
-    scatter = np.full(n_people, floor)
+    scatter = np.ones(n_people)
     for _ in range(_STEPS):
         before = quality
-        scatter = np.maximum(_scatter(shown, quality, bias, prior), floor)
+        free = _free(shown, scatter) if corrected else per_person
+        scatter = np.maximum(_scatter(shown, quality, bias, free=free, prior=prior), floor)
         weight = (scatter**-2)[shown.person]
         quality = sums(shown.stimulus, weight * (u - bias[shown.person]), n_stimuli)
         quality /= sums(shown.stimulus, weight, n_stimuli)
@@ -69,11 +72,21 @@ def bias_and_inconsistency(
     return BiasModel(quality + centre, error, bias - centre, scatter)
 
 
-def _scatter(shown: Presented, quality: Floats, bias: Floats, prior: float) -> Floats:
-    """Return the standard deviation of each person's residuals, as the Annex takes it."""
+def _free(shown: Presented, scatter: Floats) -> Floats:
+    """Return how many ratings of each person are free: all, less their weight in the qualities."""
+    weight = (scatter**-2)[shown.person]
+    n_stimuli = int(shown.stimulus.max(initial=-1)) + 1
+    share = weight / sums(shown.stimulus, weight, n_stimuli)[shown.stimulus]
+    return np.maximum(sums(shown.person, 1.0 - share, len(shown.people)), 1e-9)
+
+
+def _scatter(
+    shown: Presented, quality: Floats, bias: Floats, *, free: Floats, prior: float
+) -> Floats:
+    """Return the standard deviation of each person's residuals about their mean."""
     rest = shown.rating - quality[shown.stimulus] - bias[shown.person]
     n_people = len(shown.people)
     mean = sums(shown.person, rest, n_people) / shown.answers
     square = sums(shown.person, (rest - mean[shown.person]) ** 2, n_people)
-    common = square.sum() / max(shown.rating.size, 1)
-    return np.asarray(np.sqrt((square + prior * common) / (shown.answers + prior)))
+    common = square.sum() / max(float(free.sum()), 1e-9)
+    return np.asarray(np.sqrt((square + prior * common) / (free + prior)))

@@ -1,0 +1,118 @@
+"""Verdicts with and without flagged people, and that spoilers move none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from analysis.decision import verdicts
+from analysis.decision.verdicts import Decision, Verdict
+from analysis.inference import infer
+from analysis.observers import Stimulus
+from analysis.population import POPULATION
+from analysis.reading import Tables, tables_from
+from analysis.screening.flags import flags_of
+from analysis.screening.sensitivity import (
+    NOBODY_FLAGGED,
+    UNWEIGHTED,
+    WEIGHTED,
+    verdict_sensitivity,
+    without,
+)
+from analysis.screening.signals import observer_signals
+from analysis.screening.weights import observer_weights
+from analysis.simulated import simulate_tables
+from analysis.spoilers import SPOILERS
+
+NAMED = {"S001": ("shuffler",), "S002": ("inverter",)}
+
+
+def decision(loss: float) -> Decision:
+    realism = verdicts.Test(loss, loss - 0.1, loss + 0.1, 0.5)
+    noticed = verdicts.Test(0.0, 0.0, 0.1, 0.25)
+    verdict = Verdict("near", "low", "ultra", realism, noticed, True, 1.0)
+    return Decision("near", "ultra", "low", (verdict,), 0.0)
+
+
+def test_a_verdict_that_hangs_on_one_person_is_marked(thesis_tables: Tables) -> None:
+    asked = []
+
+    def decide(tables: Tables, weights: dict[str, float]) -> list[Decision]:
+        present = set(tables.ratings["participant"])
+        asked.append(weights)
+        return [decision(0.0 if "S002" in present else 1.0)]
+
+    table = verdict_sensitivity(
+        thesis_tables, NAMED, usual=[decision(0.0)], weights={"S002": 0.1}, decide=decide
+    )
+    moved = table[table["is_moved"]]
+    assert table["people"].tolist() == [
+        *(WEIGHTED, UNWEIGHTED, "without S001", "without S002", NOBODY_FLAGGED)
+    ]
+    assert moved["people"].tolist() == ["without S002", NOBODY_FLAGGED]
+    assert moved["verdict"].tolist() == ["different"] * 2
+    assert asked == [{}, {"S002": 0.1}, {}, {}]  # weights of people who are there
+
+
+def test_too_many_flagged_people_are_left_out_together_only(thesis_tables: Tables) -> None:
+    table = verdict_sensitivity(
+        *(thesis_tables, NAMED),
+        usual=[decision(0.0)],
+        weights={},
+        decide=lambda _tables, _weights: [],
+        most=1,
+    )
+    assert table["people"].tolist() == [WEIGHTED, UNWEIGHTED, NOBODY_FLAGGED]
+    assert table["verdict"].tolist() == ["equivalent", "", ""]
+
+
+def shown() -> dict[str, Stimulus]:
+    pairs = [("low", "ultra"), ("ultra", "low"), ("medium", "ultra"), ("ultra", "medium")]
+    pairs += [("ultra", "ultra"), ("low", "low")]
+    return {
+        f"{distance}-{left}-{right}": Stimulus(distance, POPULATION.iris_px[distance], left, right)
+        for distance in ("macroscopic", "far")
+        for left, right in pairs
+    }
+
+
+def moved_by_spoilers(seed: int, clips: dict[str, Stimulus]) -> list[str]:
+    """Return what four spoilers among thirty change against the same study without them."""
+    kinds = dict(enumerate((SPOILERS[seed % 5 :] + SPOILERS[: seed % 5])[:4]))
+    frames = simulate_tables(clips, np.random.default_rng(seed), participants=30, spoilers=kinds)
+    spoilt = tables_from(frames)
+    clean = without(spoilt, [f"S{i + 1:03}" for i in kinds])
+    found = []
+    for tables in (clean, spoilt):
+        weights = observer_weights(observer_signals(tables))
+        found.append(
+            {
+                (own.distance, verdict.lod): verdict.outcome
+                for own in infer(tables, weights=weights or None).decisions
+                for verdict in own.verdicts
+            }
+        )
+    assert found[0]
+    return [
+        f"{key}: {found[0][key]} {new}" for key, new in found[1].items() if found[0][key] != new
+    ]
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_four_spoilers_in_thirty_move_no_verdict(seed: int) -> None:
+    assert moved_by_spoilers(seed, shown()) == []
+
+
+@pytest.mark.long
+def test_four_spoilers_hardly_ever_move_a_verdict() -> None:
+    moved = [moved_by_spoilers(seed, shown()) for seed in range(10, 30)]
+    assert sum(map(len, moved)) <= 2, moved  # of 80; a verdict on its margin may tip
+
+
+def test_one_person_is_left_out_of_every_table(thesis_tables: Tables) -> None:
+    rest = without(replace(thesis_tables), ["S001"])
+    for frame in (rest.ratings, rest.comparisons, rest.participants):
+        assert set(frame["participant"]) == {f"S{i:03}" for i in range(2, 11)}
+    assert "S001" not in flags_of(observer_signals(rest))
