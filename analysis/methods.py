@@ -63,11 +63,12 @@ def _observers() -> list[str]:
         "In the models a person counts for less than one where they were flagged (0.1) or where "
         "their inconsistency exceeds 1.5 times the median, v (then (1.5 v / v_i)²). Bias and "
         "inconsistency are those of ITU-T P.910 Annex E by alternating projection, with a floor of "
-        "0.15 points and, so that no small set of ratings fits by chance, four answers of the "
-        "common scatter added to each person's own and the person's share in the estimated qualities "
-        "allowed for. ICC(2,1) and ICC(2,k) follow Shrout and Fleiss 1979 with McGraw and Wong's intervals, alpha Krippendorff's ordinal metric with a "
-        "jackknife over people and a bootstrap over stimuli. What people wrote was coded by words; "
-        "a person counts once per pair of LoDs.",
+        "0.15 points; so that no small set of ratings fits by chance, four answers of the common "
+        "scatter are added to each person's own, and their share in the estimated qualities is "
+        "allowed for. ICC(2,1) and ICC(2,k) follow Shrout and Fleiss 1979 with McGraw and Wong's "
+        "intervals; alpha takes Krippendorff's ordinal metric, with a jackknife over people and a "
+        "bootstrap over stimuli. What people wrote was coded by words; a person counts once per "
+        "pair of LoDs.",
     ]
 
 
