@@ -33,6 +33,9 @@ export class Player {
     const on = (target, name, act) => target.addEventListener(name, act, { signal: this.stop.signal });
     on(document, "visibilitychange", () => document.hidden && this.interrupt("hidden"));
     on(window, "pagehide", () => this.interrupt("left"));
+    // The way to stop is covered while a clip plays: the key that leaves things leaves it, too.
+    on(document, "keydown", ({ key }) => key === "Escape" && this.interrupt("stopped"));
+    on(document, "fullscreenchange", () => document.fullscreenElement || this.interrupt("stopped"));
     on(this.video, "ended", () => this.end());
     // Keys of the keyboard and power savers may pause a video; there is no control to go on with.
     on(this.video, "pause", () => this.video.ended || this.interrupt("paused"));

@@ -4,6 +4,7 @@ import { amountText } from "./amount.js";
 import { submitPatiently } from "./navigate.js";
 import { fetchPatiently } from "./patience.js";
 import { AHEAD } from "./preload.js";
+import { screenZoom } from "./measures.js";
 import { enterFullscreen, screenFacts } from "./screen.js";
 
 const POLL_MS = 2000;
@@ -34,9 +35,10 @@ export function startPreparing(main, { clips, start }) {
 
   function query() {
     const facts = screenFacts();
+    const enlarged = screenZoom();
     return new URLSearchParams({
-      screen_width_px: facts.screen_width_px,
-      screen_height_px: facts.screen_height_px,
+      screen_width_px: Math.round(facts.screen_width_px / enlarged),
+      screen_height_px: Math.round(facts.screen_height_px / enlarged),
     });
   }
 

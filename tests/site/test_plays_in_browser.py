@@ -172,6 +172,16 @@ def test_a_page_that_was_hidden_fails(visit: Any, site: Any, page: Page) -> None
     assert trials.all_trials(site.db, site.people()[0])[0].views == 0
 
 
+def test_escape_ends_a_play_and_shows_the_way_to_stop(visit: Any, page: Page) -> None:
+    visit.straight_to_trial()
+    visit.state("ready")
+    during_the_play(page, "document.dispatchEvent(new KeyboardEvent('keydown', {key: 'Escape'}))")
+    play = play_again(visit)
+    assert (play["is_complete"], play["ended_by"]) == (False, "stopped")
+    visit.state("interrupted")
+    expect(page.get_by_role("link", name="Stop")).to_be_visible()
+
+
 def test_a_reload_in_mid_clip_is_a_play_that_was_interrupted(
     visit: Any, site: Any, page: Page
 ) -> None:
