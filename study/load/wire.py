@@ -7,12 +7,16 @@ connection is an OSError; the next request opens another.
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 from urllib.parse import urlencode, urlsplit
 
 TIMEOUT_S: Final = 30.0
+IDLE_S: Final = 3.0  # what lies idle for longer the server closes (uvicorn after 5 s)
+    3.0  # servers close what lies idle for longer (uvicorn after 5 s); so does a browser
+)
 
 
 class BrokenError(OSError):
@@ -41,6 +45,7 @@ class Wire:
     headers: Mapping[str, str] = field(default_factory=dict)
     timeout_s: float = TIMEOUT_S
     cookies: dict[str, str] = field(default_factory=dict)
+    _used: float = 0.0
     _streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
 
     async def get(self, path: str) -> Answered:
@@ -89,6 +94,8 @@ class Wire:
         return "\r\n".join([*lines, "", ""]).encode()
 
     async def _exchange(self, request: bytes) -> Answered:
+        if time.monotonic() - self._used > IDLE_S:
+            self.close()
         if self._streams is None:
             where = urlsplit(self.url)
             self._streams = await asyncio.open_connection(where.hostname, where.port)
@@ -103,6 +110,7 @@ class Wire:
             elif name:
                 headers[name.lower()] = value.strip()
         body = await _body(reader, headers)
+        self._used = time.monotonic()
         if headers.get("connection") == "close":
             self.close()
         return Answered(int(first.split(" ", 2)[1]), headers, body)
