@@ -15,8 +15,6 @@ from urllib.parse import urlencode, urlsplit
 
 TIMEOUT_S: Final = 30.0
 IDLE_S: Final = 3.0  # what lies idle for longer the server closes (uvicorn after 5 s)
-    3.0  # servers close what lies idle for longer (uvicorn after 5 s); so does a browser
-)
 
 
 class BrokenError(OSError):
