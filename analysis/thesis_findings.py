@@ -94,7 +94,7 @@ CLAIMS: Final = (
     ),
     Claim(
         "Ultra at near is no better than medium there",
-        "no higher rating than assumed; no number",
+        "neither ultra eye (clips 4 and 6) was rated higher; no number",
         "6.2",
         lambda e: gap_of_lods(e.tables, "near", "ultra", "medium"),
     ),

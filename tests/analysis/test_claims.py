@@ -32,7 +32,7 @@ def test_numbers_are_those_of_the_data(claims: pd.DataFrame, thesis_tables: Tabl
     )
     rated = thesis_tables.ratings["rating"].dropna()
     perfect = claims.loc["Hardly anything is perfect", "found"]
-    assert perfect.startswith(f"{int((rated == 5).sum())} of {len(rated)} ratings, at most ")
+    assert perfect.startswith(f"a 5 in {int((rated == 5).sum())} of {len(rated)} ratings, at most ")
     assert claims.loc["Low is rated highest at far", "found"].startswith("far minus macroscopic, ")
 
 
