@@ -74,7 +74,8 @@ def ends_of_scale(tables: Tables, rating: int) -> Found:
     shares, counts = given.mean(), given.sum()
     low, high = np.clip(t_interval(shares), 0, 1)
     text = (
-        f"a {rating} in {int(counts.sum())} of {len(rows)} ratings, at most {int(counts.max())} by one person; "
+        f"a {rating} in {int(counts.sum())} of {len(rows)} ratings, "
+        f"at most {int(counts.max())} by one person; "
         f"{percent(shares.mean())} of a person's ratings ({_range(low, high)}, "
         f"{people(len(shares))})"
     )
