@@ -33,6 +33,7 @@ def small_study(tmp_path: Path) -> Path:
     """Return a study file like the thesis's, with three clips of two small frames."""
     text = (ROOT / "study/design/definitions/thesis.toml").read_text(encoding="utf-8")
     for pattern, value in (
+        (r"^translations = .*\n", ""),  # they lie elsewhere
         (r"^sizes = .*$", 'sizes = ["96x64"]'),
         (r"^duration_s = .*$", "duration_s = 0.2"),
         (r"^fps = .*$", "fps = 10"),
