@@ -165,7 +165,7 @@ def test_a_clip_is_rendered_once_and_shown_to_simulated_people(
     assert main(["export", "--data", str(tmp_path / "data"), "--out", str(tmp_path / "out")]) == 0
     rows = (tmp_path / "out" / "ratings.csv").read_text(encoding="utf-8").splitlines()
     assert len(rows) == 1 + 2 * 2  # two people, one clip, two eyes
-    assert all(row.startswith("thesis,1,true,") for row in rows[1:])
+    assert all(row.startswith("thesis,2,true,") for row in rows[1:])
 
     with running(tiny_study, tmp_path / "data") as run:
         run.line_with(ready)
