@@ -51,7 +51,7 @@ def test_an_iris_of_a_photograph_is_known_by_its_contents_and_not_its_place(
         ),
         (
             {"irises": {"one": {"iris_colour": "bleu"}}},
-            'irises.one.iris_colour: unknown',
+            "irises.one.iris_colour: unknown",
         ),
     ],
 )
