@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from analysis.audit import Audit, ShownClip, audit_design
     from analysis.charts import CHARTS, Chart, figures
     from analysis.column import Column
+    from analysis.decision.verdicts import Margins
     from analysis.observers import Answer, Observer, Stimulus, draw_observer
     from analysis.parsing import TableError
     from analysis.publish import Summary, analyse
@@ -29,6 +30,7 @@ _HOMES = {
     "audit": ("Audit", "ShownClip", "audit_design"),
     "charts": ("CHARTS", "Chart", "figures"),
     "column": ("Column",),
+    "decision.verdicts": ("Margins",),
     "observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
     "parsing": ("TableError",),
     "publish": ("Summary", "analyse"),
@@ -43,6 +45,7 @@ __all__ = [
     "Audit",
     "Chart",
     "Column",
+    "Margins",
     "Observer",
     "ShownClip",
     "Stimulus",

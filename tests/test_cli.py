@@ -218,3 +218,9 @@ def test_building_the_parser_loads_nothing_heavy() -> None:
 def test_the_parser_knows_the_commands_of_the_design() -> None:
     options = build_parser().parse_args(["researcher", "add", "ada"])
     assert (options.command, options.action, options.name) == ("researcher", "add", "ada")
+
+
+def test_a_margin_that_cannot_be_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["analyse", "ratings.csv", "--noticed-margin", "1.5"]) == 1
+    message = capsys.readouterr().err.strip()
+    assert message == "ocularist analyse: noticed_share: 1.5 is not between 0 and 1"

@@ -39,6 +39,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--bench", type=Path, metavar="FILE.json", help="costs measured by ocularist bench"
     )
     parser.add_argument(
+        "--realism-margin",
+        type=float,
+        default=0.5,
+        metavar="POINTS",
+        help="a loss of realism that does not matter, set before the data (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--noticed-margin",
+        type=float,
+        default=0.25,
+        metavar="SHARE",
+        help="share of people, beyond false alarms, who may notice (default: %(default)s)",
+    )
+    parser.add_argument(
         "--codes",
         type=Path,
         metavar="FILE.csv",
@@ -48,11 +62,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Analyse, say the answer, name the report."""
-    from analysis import analyse, read_source
+    from analysis import Margins, analyse, read_source
 
+    margins = Margins(options.realism_margin, options.noticed_margin)
     source = options.source
     tables = _from_database(source) if "://" in source else read_source(source)
-    summary = analyse(tables, options.out, bench=options.bench, codes=options.codes)
+    summary = analyse(
+        tables, options.out, bench=options.bench, codes=options.codes, margins=margins
+    )
     for line in summary.lines():
         print("\n".join(textwrap.wrap(line, WIDTH, break_on_hyphens=False)))
     print(summary.report)
