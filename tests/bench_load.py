@@ -121,14 +121,16 @@ def otree(people: int, rounds: int) -> Iterator[tuple[str, list[str]]]:
         }
         quiet = {"cwd": folder, "env": environment, "stdout": subprocess.DEVNULL}
         for command in (["resetdb", "--noinput"], ["create_session", "eyes", str(people)]):
-            subprocess.run([programs / "otree", *command], check=True, **quiet)  # type: ignore[call-overload]
+            subprocess.run([programs / "otree", *command], check=True, **quiet)
         with contextlib.closing(sqlite3.connect(folder / "db.sqlite3")) as file:
             codes = [row[0] for row in file.execute("SELECT code FROM otree_participant")]
         port = free_port()
         server = subprocess.Popen(
             [programs / "otree", "prodserver1of2", str(port)],
-            start_new_session=True, stderr=subprocess.DEVNULL, **quiet,
-        )  # fmt: skip # type: ignore[call-overload]
+            start_new_session=True,
+            stderr=subprocess.DEVNULL,
+            **quiet,
+        )
         try:
             wait_for(port)
             yield f"http://127.0.0.1:{port}", codes

@@ -62,9 +62,9 @@ def test_people_walk_through_two_processes_and_guessers_find_one_limit(site: Loa
 
             async def request(*args: object, **kwargs: object) -> object:
                 person.wire.close()
-                return await keep(*args, **kwargs)  # type: ignore[arg-type]
+                return await keep(*args, **kwargs)
 
-            person.wire.request = request  # type: ignore[method-assign, assignment]
+            person.wire.request = request
             person.uses_outbox = False
             return (await person.walk()).code
 

@@ -73,7 +73,7 @@ def contrast(kind: str, eye: str) -> tuple[float, float]:
     The colour is compared at one luminance, as the dots' jitter leaves nothing else; lightness in
     standard deviations of that jitter.
     """
-    _, on_digit, rgb = dots(Plate(kind, 8, 11))  # type: ignore[arg-type]  # a parametrised name
+    _, on_digit, rgb = dots(Plate(kind, 8, 11))
     seen = seen_by(eye, rgb)
     light = lab(seen)[:, 0]
     level = seen / (seen @ XYZ_OF_RGB[1])[:, None] * 0.2

@@ -64,7 +64,7 @@ UNSEEN = {"low": 0.15, "medium": 0.15, "high": 0.12}
 
 def decided(means: dict[str, float], yes: dict[str, float] | None, **margins: float) -> Decision:
     noticing = None if yes is None else Seen(yes)
-    found = decide(Rated(means), noticing, RANKS, margins=Margins(**margins))  # type: ignore[arg-type] # stand-ins with what decide asks of them
+    found = decide(Rated(means), noticing, RANKS, margins=Margins(**margins))
     assert len(found) == 1
     return found[0]
 
@@ -116,7 +116,7 @@ def test_shares_say_how_often_each_is_the_cheapest() -> None:
 
 def test_lods_without_a_rank_and_lonely_ones_are_left_out() -> None:
     assert outcomes(decided({"plain": 3.0, **MEANS}, UNSEEN)).keys() == {"high", "medium", "low"}
-    assert decide(Rated({"ultra": 3.0}), Seen({}), RANKS) == []  # type: ignore[arg-type] # stand-ins
+    assert decide(Rated({"ultra": 3.0}), Seen({}), RANKS) == []
 
 
 def test_the_table_has_a_row_for_every_verdict() -> None:
