@@ -157,7 +157,7 @@ def _rate(
         raise BotError(f"{page.path}: {clip} is in no manifest here; give the site's clips' folder")
     answer = observer.answer(seen[clip], rng, position=position)
     for view in range(max(answer.views, definition.order.min_views)):
-        play = _play(int(page.data["frames"]))
+        play = complete_play(int(page.data["frames"]))
         key = f"play-{position}-{view}"
         browser.report({"kind": "play", "key": key, "position": position, "play": play})
     given = _filled(trial_answers(definition.questions, answer, rng))
@@ -169,7 +169,8 @@ def _rate(
         raise BotError(f"{page.path}: the site did not accept a simulated questionnaire")
 
 
-def _play(frames: int) -> dict[str, Any]:
+def complete_play(frames: int) -> dict[str, Any]:
+    """Return the record of a play in which every frame was presented."""
     return {
         "is_complete": True,
         "was_hidden": False,

@@ -65,7 +65,7 @@ def start_command(
         stdin=subprocess.DEVNULL,
         env={**os.environ, **(environment or {})},
         start_new_session=True,
-        preexec_fn=prepare,  # noqa: PLW1509 - the keeper has no threads
+        preexec_fn=prepare,  # noqa: PLW1509 - two system calls, no lock
     )
 
 

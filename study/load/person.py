@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from study.bots import complete_play
 from study.checking import calibration_report, device_report, eyesight_report
 from study.design.definition import StudyDefinition, read_definition
 from study.design.questions import (
@@ -98,7 +99,7 @@ class Person(Visit):
         position = int(self.data("position"))
         frames = int(self.data("frames"))
         for _ in range(int(self.data("views_left"))):
-            play = {"kind": "play", "position": position, "play": _play(frames)}
+            play = {"kind": "play", "position": position, "play": complete_play(frames)}
             await self.report(play, "play")
         given = _answers(self.definition.questions, self.rng)
         if self.uses_outbox:
@@ -124,14 +125,3 @@ def _answer(question: Question, rng: np.random.Generator) -> str:
     if isinstance(question, NumberQuestion):
         return str(int(rng.integers(int(question.minimum), int(question.maximum) + 1)))
     return f"Words of no meaning, number {int(rng.integers(10_000))}."
-
-
-def _play(frames: int) -> dict[str, Any]:
-    return {
-        "is_complete": True,
-        "was_hidden": False,
-        "expected_frames": frames,
-        "presented_frames": frames,
-        "dropped_frames": 0,
-        "shown_scale": 1.0,
-    }

@@ -81,7 +81,7 @@ class TemporaryServer:
                 stdout=log,
                 stderr=log,
                 start_new_session=True,  # Ctrl-C reaches its keeper alone
-                preexec_fn=ending_with_parent(),  # noqa: PLW1509 - as for our other processes
+                preexec_fn=ending_with_parent(),  # noqa: PLW1509 - one system call, no lock
                 **self._account,
             )
         deadline = time.monotonic() + UP_S

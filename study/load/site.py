@@ -101,7 +101,7 @@ class LoadedSite:
                 stdout=log,
                 stderr=log,
                 start_new_session=True,
-                preexec_fn=ending_with_parent(),  # noqa: PLW1509 - as for our other processes
+                preexec_fn=ending_with_parent(),  # noqa: PLW1509 - one system call, no lock
             )
 
     async def wait(self) -> None:

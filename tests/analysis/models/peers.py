@@ -25,7 +25,7 @@ def lacks_r() -> str:
 def ask_r(script: str) -> pd.DataFrame:
     """Run a script that writes one CSV table to its output; skip the test without R."""
     if reason := lacks_r():
-        pytest.skip(reason)
+        pytest.skip(reason)  # R is a peer to compare with, and no part of the set-up
     done = subprocess.run(
         ["Rscript", "-e", f"suppressMessages(library(ordinal))\n{script}"],
         capture_output=True,
