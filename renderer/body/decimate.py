@@ -13,8 +13,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from renderer.body.living_mesh import Indices, LivingMesh
+
 Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 _BORDER_WEIGHT: Final = 30.0  # open rims (neck, wrists) keep their line
 _FLIP_COSINE: Final = 0.2  # a triangle may not turn further than this while a vertex goes
@@ -22,16 +23,11 @@ _FLIP_COSINE: Final = 0.2  # a triangle may not turn further than this while a v
 
 @dataclass
 class _Surface:
-    """The mesh while it shrinks: living triangles, and which of them touch each vertex."""
+    """The mesh while it shrinks."""
 
     vertices: Floats
-    triangles: list[list[int]]
-    around: list[set[int]]
+    mesh: LivingMesh
     quadrics: Floats
-
-    def neighbours(self, vertex: int) -> set[int]:
-        found = {other for row in self.around[vertex] for other in self.triangles[row]}
-        return found - {vertex}
 
 
 def decimate(
@@ -53,20 +49,17 @@ def decimate(
         _, gone, kept, then = heapq.heappop(heap)
         if then != version[gone] + version[kept] or not _may_collapse(surface, gone, kept):
             continue
-        living -= _collapse(surface, gone, kept)
+        living -= surface.mesh.merge(gone, kept)
+        surface.quadrics[kept] += surface.quadrics[gone]
         version[gone] = -(1 << 40)
         version[kept] += 1
-        for other in sorted(surface.neighbours(kept)):
+        for other in sorted(surface.mesh.neighbours(kept)):
             for cost, start, end, _ in _steps(surface, kept, other):
                 heapq.heappush(heap, (cost, start, end, version[kept] + version[other]))
-    return np.array([row for row in surface.triangles if row], dtype=np.int64)
+    return surface.mesh.left()
 
 
 def _surface(vertices: Floats, triangles: Indices, weight: Floats) -> _Surface:
-    around: list[set[int]] = [set() for _ in range(len(vertices))]
-    for row, corners in enumerate(triangles.tolist()):
-        for corner in corners:
-            around[corner].add(row)
     a, b, c = (vertices[triangles[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     double_area = np.linalg.norm(normal, axis=1)
@@ -77,7 +70,9 @@ def _surface(vertices: Floats, triangles: Indices, weight: Floats) -> _Surface:
     for k in range(3):
         np.add.at(quadrics, triangles[:, k], quadric)
     _guard_borders(quadrics, vertices, triangles=triangles, normal=normal)
-    return _Surface(vertices, triangles.tolist(), around, quadrics * weight[:, None, None])
+    return _Surface(
+        vertices, LivingMesh(triangles, len(vertices)), quadrics * weight[:, None, None]
+    )
 
 
 def _guard_borders(
@@ -121,12 +116,13 @@ def _steps(surface: _Surface, a: int, b: int) -> list[tuple[float, int, int, int
 
 def _may_collapse(surface: _Surface, gone: int, kept: int) -> bool:
     """Whether the surface stays a surface and no triangle folds over."""
-    shared = surface.around[gone] & surface.around[kept]
-    common = surface.neighbours(gone) & surface.neighbours(kept)
+    mesh = surface.mesh
+    shared = mesh.around[gone] & mesh.around[kept]
+    common = mesh.neighbours(gone) & mesh.neighbours(kept)
     if not shared or len(common) != len(shared):
         return False
-    for row in surface.around[gone] - shared:
-        corners = surface.triangles[row]
+    for row in mesh.around[gone] - shared:
+        corners = mesh.triangles[row]
         before = _normal(surface.vertices, corners)
         after = _normal(surface.vertices, [kept if k == gone else k for k in corners])
         size = np.linalg.norm(before) * np.linalg.norm(after)
@@ -142,18 +138,3 @@ def _normal(vertices: Floats, corners: list[int]) -> Floats:
     return np.array(
         [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
     )
-
-
-def _collapse(surface: _Surface, gone: int, kept: int) -> int:
-    """Carry out a step and return how many triangles vanished."""
-    shared = surface.around[gone] & surface.around[kept]
-    for row in shared:
-        for corner in surface.triangles[row]:
-            surface.around[corner].discard(row)
-        surface.triangles[row] = []
-    for row in surface.around[gone]:
-        surface.triangles[row] = [kept if k == gone else k for k in surface.triangles[row]]
-        surface.around[kept].add(row)
-    surface.around[gone] = set()
-    surface.quadrics[kept] += surface.quadrics[gone]
-    return len(shared)

@@ -13,6 +13,7 @@ from typing import Final
 
 import numpy as np
 
+from renderer.body.living_mesh import LivingMesh
 from renderer.body.makehuman import Floats, Indices
 
 FLIP_COSINE: Final = 0.3  # a triangle may not turn further than this while a vertex goes
@@ -41,7 +42,7 @@ def thin(
         if then == now and surface.may_collapse(gone, kept, longest_mm=longest_mm):
             surface.collapse(gone, kept)
             surface.push_steps(heap, kept, sorted(surface.neighbours(kept)))
-    return np.array([row for row in surface.triangles if row], dtype=np.int64)
+    return surface.left()
 
 
 @dataclass
@@ -65,26 +66,19 @@ class _Quadrics:
             values[kept] += values[gone]
 
 
-class _Surface:
-    """The mesh while it shrinks: living triangles, and which of them touch each vertex."""
+class _Surface(LivingMesh):
+    """The mesh while it shrinks, with what each vertex looks like."""
 
     def __init__(self, properties: Floats, triangles: Indices, points_mm: Floats) -> None:
+        super().__init__(triangles, len(properties))
         self.properties = np.asarray(properties, dtype=float)
         self.points_mm = points_mm
-        self.triangles: list[list[int]] = triangles.tolist()
         self.version = [0] * len(properties)
-        self.around: list[set[int]] = [set() for _ in range(len(properties))]
-        for row, corners in enumerate(self.triangles):
-            for corner in corners:
-                self.around[corner].add(row)
         edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
         edges, owners = np.unique(edges, axis=0, return_counts=True)
         self._stays = np.zeros(len(properties), dtype=bool)
         self._stays[edges[owners != 2].ravel()] = True
         self._quadrics = _quadrics(self.properties, triangles, points_mm)
-
-    def neighbours(self, vertex: int) -> set[int]:
-        return {other for row in self.around[vertex] for other in self.triangles[row]} - {vertex}
 
     def push_steps(
         self, heap: list[tuple[float, int, int, int, int]], vertex: int, others: list[int]
@@ -123,14 +117,7 @@ class _Surface:
 
     def collapse(self, gone: int, kept: int) -> None:
         """Carry out a step."""
-        for row in self.around[gone] & self.around[kept]:
-            for corner in self.triangles[row]:
-                self.around[corner].discard(row)
-            self.triangles[row] = []
-        for row in self.around[gone]:
-            self.triangles[row] = [kept if k == gone else k for k in self.triangles[row]]
-            self.around[kept].add(row)
-        self.around[gone] = set()
+        self.merge(gone, kept)
         self._quadrics.add(kept, gone)
         self.version[gone] = -1
         self.version[kept] += 1
