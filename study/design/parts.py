@@ -140,7 +140,19 @@ class Orbit(Part):
     directions: Annotated[tuple[Direction, ...], Field(min_length=1)] = ("rightward", "leftward")
 
 
-class Eye(Part):
+class _PartOfClip(Part):
+    """Values that together must make a clip."""
+
+    @model_validator(mode="after")
+    def _accepted_by_clip(self) -> Self:
+        try:
+            ClipSpec(left=Detail(), right=Detail(), **self.model_dump())
+        except ValueError as error:
+            raise refuse(str(error)) from None
+        return self
+
+
+class Eye(_PartOfClip):
     """What both eyes share, so that a pairing differs in its LoDs alone."""
 
     iris_seed: Annotated[Whole, Field(ge=0)] = 1
@@ -156,14 +168,6 @@ class Eye(Part):
     caustic_pattern: Annotated[str, clip_value("caustic_pattern")] = "computed"
     cube_size: Annotated[str, clip_value("cube_size")] = "table"
 
-    @model_validator(mode="after")
-    def _accepted_by_clip(self) -> Self:
-        try:
-            ClipSpec(left=Detail(), right=Detail(), **self.model_dump())
-        except ValueError as error:
-            raise refuse(str(error)) from None
-        return self
-
 
 def _check_environment(name: str) -> str:
     if name not in ENVIRONMENTS:
@@ -174,7 +178,7 @@ def _check_environment(name: str) -> str:
     return name
 
 
-class Scene(Part):
+class Scene(_PartOfClip):
     """Surroundings, sun and the other characters that the cornea reflects."""
 
     environment: Annotated[str, AfterValidator(_check_environment)] = "park"
@@ -185,11 +189,3 @@ class Scene(Part):
     sun_azimuth_deg: Annotated[Real, clip_value("sun_azimuth_deg")] = -15.0
     sun_elevation_deg: Annotated[Real, clip_value("sun_elevation_deg")] = 42.0
     crowd: Annotated[Whole, clip_value("crowd")] = 5
-
-    @model_validator(mode="after")
-    def _accepted_by_clip(self) -> Self:
-        try:
-            ClipSpec(left=Detail(), right=Detail(), **self.model_dump())
-        except ValueError as error:
-            raise refuse(str(error)) from None
-        return self
