@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from analysis.audit import Audit, ShownClip, audit_design
-    from analysis.charts import CHARTS, Chart, figures
+    from analysis.charts import CHARTS, Chart, figure_bytes, figures
     from analysis.column import Column
     from analysis.decision.verdicts import Margins
     from analysis.observers import Answer, Observer, Stimulus, draw_observer
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "audit": ("Audit", "ShownClip", "audit_design"),
-    "charts": ("CHARTS", "Chart", "figures"),
+    "charts": ("CHARTS", "Chart", "figure_bytes", "figures"),
     "column": ("Column",),
     "decision.verdicts": ("Margins",),
     "observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
@@ -59,6 +59,7 @@ __all__ = [
     "column_names",
     "columns_of",
     "draw_observer",
+    "figure_bytes",
     "figures",
     "read_source",
     "tables_from",

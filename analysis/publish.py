@@ -15,8 +15,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from analysis.answer import Finding, findings
 from analysis.audit import Audit, audit_design, shown_clips
-from analysis.chart_style import SIMULATED, figure_bytes
 from analysis.charts import CHARTS
+from analysis.charts.style import SIMULATED, figure_bytes
 from analysis.coding import read_codes
 from analysis.correlation import person_concordance
 from analysis.cost import Costs, read_bench

@@ -63,7 +63,7 @@ class Drawer:
     def figure(self, db: Database, study: Study, kind: str, name: str) -> bytes:
         """Return a chart as SVG; raises ValueError for a name that is no chart."""
         from analysis import figures
-        from analysis.chart_style import figure_bytes
+        from analysis.charts.style import figure_bytes
 
         with self.lock:
             found = self.gathered(db, study, kind)

@@ -12,8 +12,9 @@ from typing import Final
 import pandas as pd
 from matplotlib.figure import Figure
 
-from analysis import cell_charts, share_charts, shares, trend_charts
-from analysis.clip_chart import realism_per_clip
+from analysis import shares
+from analysis.charts import cells, share_bars, trends
+from analysis.charts.clips import realism_per_clip
 from analysis.correlation import rank_correlations
 from analysis.descriptive import mean_ratings, rating_counts
 from analysis.reading import Tables
@@ -50,14 +51,14 @@ CHARTS: Final = (
         "single people (where they are at most 100). τ is Kendall's tau-b within people, averaged "
         "on Fisher's z scale, with its 95 % interval; people whose ratings are all alike have "
         "none.",
-        trend_charts.perceived_against_actual,
+        trends.perceived_against_actual,
         lambda t: rank_correlations(t.ratings),
     ),
     Chart(
         "realism-by-distance",
         f"Perceived realism by viewing distance for each LoD. {_INTERVAL} Lines join neighbouring "
         "distances at which a LoD was shown.",
-        trend_charts.realism_by_distance,
+        trends.realism_by_distance,
         lambda t: mean_ratings(t.ratings, ["distance", "lod"]),
     ),
     Chart(
@@ -65,42 +66,42 @@ CHARTS: Final = (
         "Which LoD of a pair was called more realistic, whichever side it stood on. The share next "
         "to a name preferred it. Lines are 95 % Wilson intervals: above the bar for the LoD on the "
         "left, below it for the LoD on the right.",
-        share_charts.comparisons_per_pair,
+        share_bars.comparisons_per_pair,
         lambda t: shares.pair_comparison_shares(t.comparisons),
     ),
     Chart(
         "noticed-per-pair",
         "Whether anything missing or different was noticed between the eyes, by pair of LoDs. "
         "Lines are 95 % Wilson intervals of yes. For equal LoDs, yes is a false alarm.",
-        share_charts.noticed_per_pair,
+        share_bars.noticed_per_pair,
         lambda t: shares.pair_notice_shares(t.comparisons),
     ),
     Chart(
         "rating-distribution",
         "How often each rating was given, by distance and LoD; bars are centred on the middle of "
         "the scale, n counts ratings.",
-        cell_charts.rating_distribution,
+        cells.rating_distribution,
         lambda t: rating_counts(t.ratings, ["distance", "lod"], scale=t.scale),
     ),
     Chart(
         "realism-matrix",
         "What was shown: mean realism of each combination of LoD and distance, with the number of "
         "people (n) and of ratings. Nothing is known about hatched combinations.",
-        cell_charts.realism_matrix,
+        cells.realism_matrix,
         lambda t: mean_ratings(t.ratings, ["lod", "distance"]),
     ),
     Chart(
         "comparisons-per-clip",
         "Which eye was called more realistic in each clip, as the viewer saw it. Lines are 95 % "
         "Wilson intervals: above the bar for the left eye, below it for the right eye.",
-        share_charts.comparisons_per_clip,
+        share_bars.comparisons_per_clip,
         lambda t: shares.comparison_shares(t.comparisons),
     ),
     Chart(
         "noticed-per-clip",
         "Whether anything missing or different was noticed between the eyes, clip by clip. Lines "
         "are 95 % Wilson intervals of yes.",
-        share_charts.noticed_per_clip,
+        share_bars.noticed_per_clip,
         lambda t: shares.notice_shares(t.comparisons),
     ),
 )

@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
-from analysis.chart_parts import distance_label
-from analysis.chart_style import (
+from analysis.charts import CHARTS, figures
+from analysis.charts.parts import distance_label
+from analysis.charts.style import (
     LOD_COLOURS,
     SIMULATED,
     beeswarm,
@@ -19,7 +20,6 @@ from analysis.chart_style import (
     lod_colour,
     scale_colours,
 )
-from analysis.charts import CHARTS, figures
 from analysis.observers import Stimulus
 from analysis.reading import Tables, tables_from
 from analysis.simulated import simulate_tables

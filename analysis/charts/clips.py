@@ -14,8 +14,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
-from analysis.chart_parts import clip_label, distance_label, draw_mean, lod_legend, records
-from analysis.chart_style import (
+from analysis.charts.parts import clip_label, distance_label, draw_mean, lod_legend, records
+from analysis.charts.style import (
     INK,
     NO_RATINGS,
     NORMAL,

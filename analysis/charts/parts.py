@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from analysis.chart_style import INK, SMALL, lod_colour, lod_marker
+from analysis.charts.style import INK, SMALL, lod_colour, lod_marker
 from analysis.reading import Tables
 
 

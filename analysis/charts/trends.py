@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.chart_parts import distance_label, draw_mean, lod_legend, records
-from analysis.chart_style import (
+from analysis.charts.parts import distance_label, draw_mean, lod_legend, records
+from analysis.charts.style import (
     FAINT,
     INK,
     NO_RATINGS,

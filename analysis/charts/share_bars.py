@@ -17,8 +17,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from analysis.chart_parts import clip_label, grouped_places, head_groups, readable_on, records
-from analysis.chart_style import (
+from analysis.charts.parts import clip_label, grouped_places, head_groups, readable_on, records
+from analysis.charts.style import (
     CHOICE_COLOURS,
     INK,
     NOTICE_COLOURS,

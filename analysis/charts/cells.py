@@ -9,14 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from analysis.chart_parts import (
+from analysis.charts.parts import (
     distance_label,
     grouped_places,
     head_groups,
     readable_on,
     records,
 )
-from analysis.chart_style import (
+from analysis.charts.style import (
     INK,
     NO_RATINGS,
     NORMAL,
