@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from analysis.audit import Audit, ShownClip, audit_design
     from analysis.charts import CHARTS, Chart, figure_bytes, figures
     from analysis.column import Column
-    from analysis.decision.verdicts import Margins
+    from analysis.decision.margins import Margins, declared_margins
     from analysis.observers import Answer, Observer, Stimulus, draw_observer
     from analysis.parsing import TableError
     from analysis.publish import Summary, analyse
@@ -30,7 +30,7 @@ _HOMES = {
     "audit": ("Audit", "ShownClip", "audit_design"),
     "charts": ("CHARTS", "Chart", "figure_bytes", "figures"),
     "column": ("Column",),
-    "decision.verdicts": ("Margins",),
+    "decision.margins": ("Margins", "declared_margins"),
     "observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
     "parsing": ("TableError",),
     "publish": ("Summary", "analyse"),
@@ -58,6 +58,7 @@ __all__ = [
     "codebook",
     "column_names",
     "columns_of",
+    "declared_margins",
     "draw_observer",
     "figure_bytes",
     "figures",

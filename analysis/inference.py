@@ -8,7 +8,8 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from analysis.decision.verdicts import DEFAULT, Decision, Margins, decide, verdict_table
+from analysis.decision.margins import Margins
+from analysis.decision.verdicts import Decision, decide, verdict_table
 from analysis.descriptive import answered
 from analysis.estimates.noticing import Noticing, noticing_of
 from analysis.estimates.preference import Preference, preference_of
@@ -31,7 +32,10 @@ class Inference:
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """Return the numbers by file name; models that could not be fitted are left out."""
-        made = {"decision": verdict_table(list(self.decisions))} if self.decisions else {}
+        made: dict[str, pd.DataFrame] = {}
+        if self.decisions:
+            own = {"confidence": self.margins.confidence, "margins": self.margins.origins}
+            made["decision"] = verdict_table(list(self.decisions)).assign(**own)
         for name, model in (
             ("realism-model", self.realism),
             ("preference-model", self.preference),
@@ -53,13 +57,15 @@ class Inference:
 
 
 def infer(
-    tables: Tables, *, margins: Margins = DEFAULT, weights: dict[str, float] | None = None
+    tables: Tables, *, margins: Margins | None = None, weights: dict[str, float] | None = None
 ) -> Inference:
     """Fit every model that the tables allow and decide by the margins.
 
-    ``weights`` let a participant's answers count for less than one.
+    Without ``margins`` by those that the study declared. ``weights`` let a participant's answers
+    count for less than one.
     """
     rng = np.random.default_rng(SEED)
+    margins = margins or tables.margins
     people = {*tables.ratings["participant"], *tables.comparisons["participant"]}
     if len(people) < 2:  # one person says nothing about others
         return Inference(None, None, None, (), margins)

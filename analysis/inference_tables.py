@@ -32,7 +32,8 @@ def _verdicts(inference: Inference) -> ReportTable:
     own = inference.margins
     head = ("distance", "LoD", "verdict", "points below the best", "bounds", "noticed beyond")
     note = (
-        f"Margins: {number(own.realism_points)} points, {percent(own.noticed_share)} of people; "
+        f"Margins: {number(own.realism_points)} points, {percent(own.noticed_share)} of people "
+        f"({own.origins}); "
         f"bounds are one-sided, {percent(own.confidence)} each. LoDs are tested from the highest "
         "down and only until one fails. “Not shown” is no proof of a difference, nor of equality. "
         "Cheapest: share of draws from what the data leave open in which the LoD is the cheapest "

@@ -20,8 +20,8 @@ from analysis.charts.style import SIMULATED, figure_bytes
 from analysis.coding import read_codes
 from analysis.correlation import person_concordance
 from analysis.cost import Costs, read_bench
+from analysis.decision.margins import Margins
 from analysis.decision.sentences import answer
-from analysis.decision.verdicts import DEFAULT, Margins
 from analysis.descriptive import answered, differences_from_best, mean_ratings
 from analysis.inference import Inference, infer
 from analysis.inference_tables import inference_tables
@@ -70,14 +70,14 @@ def analyse(
     out: str | Path,
     *,
     bench: str | Path | None = None,
-    margins: Margins = DEFAULT,
+    margins: Margins | None = None,
     codes: str | Path | None = None,
 ) -> Summary:
     """Write every chart, table and the report into the folder ``out`` and return the findings.
 
     ``bench`` is the path of ``bench.json``, which adds what each LoD costs; ``margins`` are what
-    counts as no loss; ``codes`` is a CSV file of remarks coded by hand. Raises
-    TableError for its faults, before anything is written.
+    counts as no loss (without, what the study declared); ``codes`` is a CSV file of remarks coded
+    by hand. Raises TableError for its faults, before anything is written.
     """
     costs = read_bench(bench) if bench is not None else None
     manual = read_codes(codes) if codes is not None else None

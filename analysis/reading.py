@@ -10,13 +10,14 @@ import csv
 import io
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
 import pandas as pd
 
 from analysis.completing import complete_comparisons, complete_ratings, drop_repeated_rows
+from analysis.decision.margins import DEFAULT, Margins, declared_margins
 from analysis.parsing import TableError, check_header, parse_table
 from analysis.table import COLUMNS, SCALE, accepted_in, columns_of
 
@@ -29,7 +30,7 @@ class Tables:
     """One study's answers, typed and complete in columns, as the statistics take them.
 
     ``notes`` say in sentences what was left out or added on the way; ``scale`` is the lowest and
-    the highest rating that could be given.
+    the highest rating that could be given; ``margins`` are what the study declared beforehand.
     """
 
     ratings: pd.DataFrame
@@ -39,6 +40,7 @@ class Tables:
     notes: tuple[str, ...] = ()
     scale: tuple[int, int] = SCALE
     is_simulated: bool = field(default=False)
+    margins: Margins = DEFAULT
 
 
 def read_source(source: str | Path) -> Tables:
@@ -90,7 +92,8 @@ def tables_from(
         raise TableError(faults)
     accepted = accepted_in(codebook, "ratings") if codebook else {}
     low, high = accepted.get("rating", SCALE)
-    return _assemble(parsed, source=source, notes=notes, scale=(int(low), int(high)))
+    made = _assemble(parsed, source=source, notes=notes, scale=(int(low), int(high)))
+    return replace(made, margins=declared_margins(codebook)) if codebook else made
 
 
 def _assemble(
@@ -161,6 +164,7 @@ def _read_codebook(path: Path) -> dict[str, Any]:
     try:
         book = json.loads(path.read_text(encoding="utf-8"))
         accepted_in(book, "ratings")
+        declared_margins(book)
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise TableError(
             [f"{path.name}: not a codebook ({error}); accepted: the file that export writes"]

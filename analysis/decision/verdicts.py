@@ -11,41 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from analysis.decision.margins import DEFAULT, Margins
 from analysis.estimates.noticing import Noticing
 from analysis.estimates.realism import Realism
 
 Floats = NDArray[np.float64]
 EQUIVALENT, DIFFERENT, NOT_SHOWN = "equivalent", "different", "not shown"
-
-
-@dataclass(frozen=True)
-class Margins:
-    """What counts as no loss; set them before there are data.
-
-    ``realism_points`` on the rating scale; ``noticed_share`` of people beyond false alarms;
-    ``confidence`` one-sided.
-    """
-
-    realism_points: float = 0.5
-    noticed_share: float = 0.25
-    confidence: float = 0.95
-
-    def __post_init__(self) -> None:
-        for name, low, high in (
-            ("realism_points", 0.0, np.inf),
-            ("noticed_share", 0.0, 1.0),
-            ("confidence", 0.5, 1.0),
-        ):
-            if not low < getattr(self, name) < high:
-                raise ValueError(
-                    f"{name}: {getattr(self, name)} is not between {low:g} and {high:g}"
-                )
 
 
 @dataclass(frozen=True)
@@ -111,9 +87,6 @@ class Decision:
     best_share: float
 
 
-DEFAULT: Final = Margins()
-
-
 def decide(
     realism: Realism,
     noticing: Noticing | None,
@@ -123,8 +96,10 @@ def decide(
 ) -> list[Decision]:
     """Decide at every distance at which the highest LoD was rated beside others.
 
-    ``ranks`` order the LoDs; those without a rank (negative) are left out.
+    ``ranks`` order the LoDs unless the margins bring a sequence; those without a rank (negative)
+    and those that the sequence does not name are left out.
     """
+    ranks = margins.order(ranks)
     rating, draws = realism.expected()
     decisions = []
     for distance in dict.fromkeys(cell[0] for cell in realism.cells):
@@ -182,9 +157,13 @@ def _test(value: float, draws: Floats, margin: float, margins: Margins) -> Test:
 
 def _excess(noticing: Noticing | None, pair: tuple[str, str, str]) -> tuple[float, Floats] | None:
     """Return the share of yes beyond false alarms for a pair, with draws, where it was shown."""
-    if noticing is None or pair not in noticing.pairs:
+    if noticing is None:
         return None
-    place = noticing.pairs.index(pair)
+    distance, lod, best = pair
+    named = [own for own in (pair, (distance, best, lod)) if own in noticing.pairs]
+    if not named:
+        return None
+    place = noticing.pairs.index(named[0])
     (yes, yes_draws), (alarm, alarm_draws) = noticing.shares(), noticing.false_alarms()
     return float(yes[place] - alarm), yes_draws[:, place] - alarm_draws
 

@@ -41,16 +41,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--realism-margin",
         type=float,
-        default=0.5,
         metavar="POINTS",
-        help="a loss of realism that does not matter, set before the data (default: %(default)s)",
+        help="a loss of realism that does not matter (default: what the study declared, else 0.5)",
     )
     parser.add_argument(
         "--noticed-margin",
         type=float,
-        default=0.25,
         metavar="SHARE",
-        help="share of people, beyond false alarms, who may notice (default: %(default)s)",
+        help="share of people, beyond false alarms, who may notice (default: what the study "
+        "declared, else 0.25)",
+    )
+    parser.add_argument(
+        "--confidence",
+        type=float,
+        metavar="SHARE",
+        help="confidence of each bound, one-sided (default: what the study declared, else 0.95)",
     )
     parser.add_argument(
         "--codes",
@@ -62,11 +67,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Analyse, say the answer, name the report."""
-    from analysis import Margins, analyse, read_source
+    from analysis import analyse, read_source
 
-    margins = Margins(options.realism_margin, options.noticed_margin)
     source = options.source
     tables = _from_database(source) if "://" in source else read_source(source)
+    margins = tables.margins.changed(
+        realism_points=options.realism_margin,
+        noticed_share=options.noticed_margin,
+        confidence=options.confidence,
+    )
     summary = analyse(
         tables, options.out, bench=options.bench, codes=options.codes, margins=margins
     )

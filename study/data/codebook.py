@@ -53,4 +53,6 @@ def codebook_of(study: Study, more: Mapping[str, Sequence[Column]]) -> dict[str,
         "title": study.title,
         "definition_hash": definition.definition_hash,
     }
-    return {**about, **codebook(accepted, more=more)}
+    rule = definition.decision
+    declared = {} if rule is None else {"decision": rule.model_dump(mode="json")}
+    return {**about, **declared, **codebook(accepted, more=more)}

@@ -10,6 +10,7 @@ from dataclasses import replace
 from math import ceil
 from typing import Final
 
+from analysis import Margins
 from analysis.audit import Audit, ShownClip, audit_design
 from renderer.camera import iris_px, iris_px_of_frame
 from renderer.detail import EFFECTS
@@ -69,7 +70,8 @@ def cell_table(definition: StudyDefinition) -> list[str]:
 
 def statements(definition: StudyDefinition) -> list[str]:
     """Say in sentences what the design shows and what it cannot answer."""
-    return [_visit(definition), *_plan(definition), *audit(definition).statements()]
+    told = (_visit(definition), *_plan(definition), *_rule(definition))
+    return [*told, *audit(definition).statements()]
 
 
 def _visit(definition: StudyDefinition) -> str:
@@ -100,6 +102,20 @@ def _plan(definition: StudyDefinition) -> Iterator[str]:
         )
 
 
+def _rule(definition: StudyDefinition) -> Iterator[str]:
+    """Say by which margins LoDs will be called enough, where the file declares them."""
+    rule = definition.decision
+    if rule is None:
+        return
+    tested = f"; tested in this order: {', '.join(rule.sequence)}" if rule.sequence else ""
+    yield (
+        f"Declared before data: a LoD is enough if it is rated less than {rule.realism_margin:g} "
+        f"points lower than the best one and noticed beside it by less than "
+        f"{100 * rule.noticed_margin:g} % of people beyond false alarms, each with "
+        f"{100 * rule.confidence:g} % confidence{tested}."
+    )
+
+
 def warnings(definition: StudyDefinition) -> list[str]:
     """Return what may be meant, but is worth a second look, most general first."""
     return [*_general(definition), *_hidden(definition)]
@@ -110,6 +126,13 @@ def _general(definition: StudyDefinition) -> Iterator[str]:
         yield (
             "contact: neither email nor details; name someone who can be reached in a copy of "
             "this file before people take part"
+        )
+    if definition.decision is None:
+        own = Margins()
+        yield (
+            f"decision: no margins; the analysis takes {own.realism_points:g} points and "
+            f"{100 * own.noticed_share:g} % of people, and the report says that they were set at "
+            "analysis"
         )
     if not definition.practice:
         yield "practice: no clip; people learn the task on the first trials"

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from renderer.detail import EFFECTS
 from study.design.approach import check_approaches, check_switching
 from study.design.completion import check_completion
+from study.design.decision import check_decision
 from study.design.faults import Fault, Place, dotted, unknown
 from study.design.gold import check_gold
 from study.design.irises import check_irises
@@ -137,6 +138,7 @@ _CHECKS: Final[tuple[Callable[[Data], Iterator[Fault]], ...]] = (
     check_questions,
     check_consent,
     check_completion,
+    check_decision,
     check_recruiting,
     _check_repeats,
 )

@@ -117,6 +117,7 @@ _LATER: Final[Mapping[str, Any]] = {
     **dict.fromkeys(("completion", "recruiting"), None),
     **dict.fromkeys(("minimum_age", "motion_warning", "withdrawal", "backup_days", "health"), None),
     "max_views": None,
+    "decision": None,
     "certificate": Certificate().model_dump(mode="json"),
 }
 

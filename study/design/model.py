@@ -22,6 +22,7 @@ from study.design.approach import Approach, PolicyData, policy_of
 from study.design.calibration import Calibration
 from study.design.certificate import Certificate
 from study.design.completion import Completion
+from study.design.decision import DecisionRule
 from study.design.device_check import DeviceCheck
 from study.design.eyesight import Eyesight
 from study.design.files import without_later_keys, without_paths
@@ -88,6 +89,7 @@ class StudyDefinition(Part):
     breaks: Breaks | None = None
     attention: tuple[Attention, ...] = ()
     certificate: Certificate = Certificate()
+    decision: DecisionRule | None = None
     consent: Consent
     about: tuple[Question, ...] = ()
     about_page: Page

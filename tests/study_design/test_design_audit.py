@@ -71,6 +71,7 @@ def test_warnings_name_what_is_worth_a_second_look(raw: dict[str, Any]) -> None:
     found = audit.warnings(parse_definition(raw))
     starts = [
         "contact: neither email nor details",
+        "decision: no margins",
         "practice: no clip",
         "orbit.directions: only one",
         "questions: none is called rating_right",

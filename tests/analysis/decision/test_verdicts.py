@@ -128,6 +128,8 @@ def test_the_table_has_a_row_for_every_verdict() -> None:
 
 
 def test_impossible_margins_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"noticed_share: 1.5 is not between 0 and 1"):
+    with pytest.raises(
+        ValueError, match=r"noticed_margin: found 1.5; accepted: above 0 and below 1"
+    ):
         Margins(noticed_share=1.5)
     assert Margins() == verdicts.DEFAULT
