@@ -56,8 +56,8 @@ class Noticing:
     def _yes(self, parameters: Floats) -> Floats:
         """Return P(yes) of equal LoDs, then of every pair."""
         model = self.fit.model
-        criterion = np.array([model.thresholds(row)[-1] for row in parameters])
-        width = np.sqrt(1 + np.array([model.spreads(row)[0] for row in parameters]) ** 2)
+        criterion = model.thresholds(parameters)[:, -1]
+        width = np.sqrt(1 + model.spreads(parameters)[:, 0] ** 2)
         d = np.column_stack([np.zeros(len(parameters)), parameters[:, model.slices["location"]]])
         return np.asarray(ndtr((d - criterion[:, None]) / width[:, None]))
 

@@ -64,10 +64,10 @@ class Preference:
         """Return what standing on the right adds, in JOD, and draws of it."""
         model = self.fit.model
 
-        def added(row: Floats) -> float:
-            return -JOD * float(model.thresholds(row).mean())
+        def added(parameters: Floats) -> Floats:
+            return np.asarray(-JOD * model.thresholds(parameters).mean(axis=-1))
 
-        return added(self.fit.parameters), np.array([added(row) for row in self.draws])
+        return float(added(self.fit.parameters)), added(self.draws)
 
     def shares(self, better: Cell, worse: Cell) -> tuple[float, float, float]:
         """Return the shares (better preferred, no difference, worse preferred), sides averaged."""

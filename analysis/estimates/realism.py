@@ -67,8 +67,7 @@ class Realism:
         effects = [effect for effect in (INCONSISTENCY, STYLE) if effect in model.effects]
         grid = normal_grid([_STYLE_NODES] * len(effects))
         nodes = dict(zip(effects, grid.nodes, strict=True))
-        spread = np.array([model.spreads(row) for row in parameters])
-        tau = np.array([model.thresholds(row) for row in parameters])
+        spread, tau = model.spreads(parameters), model.thresholds(parameters)
         middle = tau @ model.middle()
         places = self._places(parameters)
         total = np.full(places.shape, float(self.stimuli.scale[0]))

@@ -79,9 +79,10 @@ class OrdinalModel:
         }
 
     def thresholds(self, parameters: Floats) -> Floats:
-        """Return tau (n_categories - 1,)."""
-        own = parameters[: self.categories - 1]
-        return np.cumsum(np.concatenate([own[:1], np.exp(own[1:])]))
+        """Return tau (..., n_categories - 1) of parameters (..., n_parameters)."""
+        own = parameters[..., : self.categories - 1]
+        steps = np.concatenate([own[..., :1], np.exp(own[..., 1:])], axis=-1)
+        return np.asarray(np.cumsum(steps, axis=-1))
 
     def locations(self, parameters: Floats) -> Floats:
         """Return eta (n_stimuli,): the stimuli's places on the latent scale."""
@@ -95,9 +96,14 @@ class OrdinalModel:
         return result
 
     def spreads(self, parameters: Floats) -> Floats:
-        """Return people's standard deviations (3,): leniency, inconsistency, style; 0 if absent."""
-        own = dict(zip(self.effects, np.exp(parameters[self.slices["spread"]]), strict=True))
-        return np.array([own.get(effect, 0.0) for effect in PERSON_EFFECTS])
+        """Return people's standard deviations (..., 3): leniency, inconsistency, style.
+
+        They are 0 where the model lacks the effect.
+        """
+        own = np.zeros((*parameters.shape[:-1], len(PERSON_EFFECTS)))
+        places = [PERSON_EFFECTS.index(effect) for effect in self.effects]
+        own[..., places] = np.exp(parameters[..., self.slices["spread"]])
+        return own
 
     def place(self, grid: Grid) -> Floats:
         """Return the grid's nodes as rows of all three person effects (3, Q)."""
