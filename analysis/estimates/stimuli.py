@@ -6,6 +6,7 @@ observer's group: all that the model lets a rating depend on.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -21,7 +22,10 @@ from analysis.ordering import distance_order, lod_order
 Floats = NDArray[np.float64]
 Cell = tuple[str, str]
 RIGHT, LEFTWARD, EXPERT = "right", "leftward", "expert"
-_COLUMNS: Final = ("distance", "lod", "other_lod", "eye", "orbit_direction", "expert")
+NUISANCES: Final = (RIGHT, LEFTWARD, EXPERT)
+_COLUMNS: Final = ("distance", "lod", "other_lod", *NUISANCES)
+_SIDES: Final = {"right": 0.5, "left": -0.5}
+_DIRECTIONS: Final = {"leftward": 0.5, "rightward": -0.5}
 
 
 @dataclass(frozen=True)
@@ -78,37 +82,38 @@ def stimuli_of(
     rows = answered(ratings)
     if rows.empty:
         raise ValueError("ratings: no rating was given")
-    known = experts or {}
-    rows = rows.assign(
-        expert=[_half(known.get(who)) for who in rows["participant"]],
-        other_lod=_known_partners(rows),
-        eye=rows["eye"].fillna(""),
-        orbit_direction=rows["orbit_direction"].fillna("") if "orbit_direction" in rows else "",
-    )
+    rows, _ = with_nuisances(rows.assign(other_lod=_known_partners(rows)), experts or {})
     own = rows.groupby(list(_COLUMNS), sort=True, observed=True).ngroup().to_numpy()
-    table = rows.assign(stimulus=own).drop_duplicates("stimulus").sort_values("stimulus")
-    table = table[list(_COLUMNS)].reset_index(drop=True)
-    coded = table.assign(
-        **{
-            RIGHT: table["eye"].map({"right": 0.5, "left": -0.5}).fillna(0.0),
-            LEFTWARD: table["orbit_direction"]
-            .map({"leftward": 0.5, "rightward": -0.5})
-            .fillna(0.0),
-            EXPERT: table["expert"],
-        }
-    )
+    coded = rows.assign(stimulus=own).drop_duplicates("stimulus").sort_values("stimulus")
+    coded = coded[list(_COLUMNS)].reset_index(drop=True)
     who, people = pd.factorize(rows["participant"])
     low, high = scale
-    shape = (len(people), len(table), high - low + 1)
+    shape = (len(people), len(coded), high - low + 1)
     counts = count_answers(who, own, rows["rating"].astype(int) - low, shape=shape)
     return Stimuli(
         table=coded,
         counts=counts,
-        cells=tuple(_cells(ratings, table)),
-        nuisances=tuple(name for name in (RIGHT, LEFTWARD, EXPERT) if coded[name].nunique() > 1),
+        cells=tuple(_cells(ratings, coded)),
+        nuisances=tuple(name for name in NUISANCES if coded[name].nunique() > 1),
         people=tuple(str(name) for name in people),
         scale=scale,
     )
+
+
+def with_nuisances(
+    rows: pd.DataFrame, experts: Mapping[str, bool]
+) -> tuple[pd.DataFrame, list[str]]:
+    """Add side, direction and expertise, coded +-1/2 and 0 between; name those that vary."""
+    around = rows["orbit_direction"] if "orbit_direction" in rows else rows["eye"].iloc[:0]
+    group = {who: 0.5 if is_expert else -0.5 for who, is_expert in experts.items()}
+    coded = rows.assign(
+        **{
+            RIGHT: rows["eye"].map(_SIDES).astype(float).fillna(0.0),
+            LEFTWARD: around.map(_DIRECTIONS).astype(float).reindex(rows.index).fillna(0.0),
+            EXPERT: rows["participant"].map(group).astype(float).fillna(0.0),
+        }
+    )
+    return coded, [name for name in NUISANCES if coded[name].nunique() > 1]
 
 
 def _cells(ratings: pd.DataFrame, table: pd.DataFrame) -> list[Cell]:
@@ -126,7 +131,3 @@ def _known_partners(rows: pd.DataFrame) -> pd.Series:
     pairs = zip(rows["distance"], rows["other_lod"], strict=True)
     is_rated = pd.Series([pair in rated for pair in pairs], index=rows.index)
     return rows["other_lod"].where(is_rated, rows["lod"])
-
-
-def _half(is_expert: bool | None) -> float:
-    return 0.0 if is_expert is None else 0.5 if is_expert else -0.5
