@@ -12,7 +12,7 @@ import numpy as np
 from analysis.observers import Answer, Observer, draw_observer
 from study.answering import about_answers, attention_answer, stimulus, trial_answers
 from study.checking import pass_checks
-from study.data import answers, arms, pauses, studies, trials, views
+from study.data import answers, arms, consents, pauses, studies, trials, views
 from study.data import progress as steps
 from study.data.database import Database
 from study.data.participants import Participant, enrol
@@ -50,7 +50,7 @@ def _take_part(db: Database, study: Study, rng: np.random.Generator) -> None:
     person = enrol(
         db, study, simulated=True, rng=rng, recruited_by="simulation", device=_DEVICE
     ).participant
-    steps.give_consent(db, person, key="consent", payload={"health": True})
+    consents.give_consent(db, person, key="consent", payload={"health": True})
     if definition.about:
         steps.store_about(db, person, about_answers(definition, observer, rng), key="about")
     pass_checks(db, person, definition, rng)

@@ -11,7 +11,7 @@ from typing import Any, Final, Literal
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from study.data.consents import CONSENTED
+from study.data.consents import CONSENTED, agrees_to_health
 from study.data.schema import EventRow
 from study.design.definition import StudyDefinition
 
@@ -31,8 +31,10 @@ def done_checks(
     """Return the checks that a participant is done with."""
     if not wanted(definition):
         return frozenset()
-    query = select(EventRow.kind, EventRow.payload).where(
-        EventRow.participant_id == participant_id, EventRow.kind.in_([*CHECKS, CONSENTED])
+    query = (
+        select(EventRow.kind, EventRow.payload)
+        .where(EventRow.participant_id == participant_id, EventRow.kind.in_([*CHECKS, CONSENTED]))
+        .order_by(EventRow.id)
     )
     return done_in([(kind, payload) for kind, payload in session.execute(query)], definition)
 
@@ -40,13 +42,13 @@ def done_checks(
 def done_in(
     events: Iterable[tuple[str, Mapping[str, Any]]], definition: StudyDefinition
 ) -> frozenset[str]:
-    """Return the checks that kinds and payloads of a participant's events show to be done.
+    """Return the checks that kinds and payloads of a participant's events, in order, show as done.
 
     Where the consent has asked about data on health, eyesight is left to those who agreed.
     """
     listed = list(events)
     done = {kind for kind, _ in listed if kind in CHECKS}
-    agreed = any(kind == CONSENTED and given.get("health") is True for kind, given in listed)
+    agreed = agrees_to_health(given for kind, given in listed if kind == CONSENTED)
     if definition.consent.health is not None and not agreed:
         done.add("eyesight")
     return frozenset(done)

@@ -1,6 +1,8 @@
-"""Who comes in: somebody new, or somebody who came before by the same link or as the same person.
+"""Who comes in: somebody new, or somebody who came before.
 
-One transaction looks and enrols, so that two windows opened at once make one participant.
+They came before by the same personal link, as the same person, or with the same token: by the very
+form that is sent once more, because its answer was lost. One transaction looks and enrols, so that
+two windows opened at once make one participant.
 """
 
 from __future__ import annotations
@@ -12,19 +14,20 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from study.data.consents import has_gone_on
 from study.data.database import Database
 from study.data.participants import Participant, enrol, record_of, token_hash
-from study.data.refusals import LinkUsedError
+from study.data.refusals import FormUsedError, LinkUsedError
 from study.data.schema import LinkRow, ParticipantRow, StudyRow
 from study.data.studies import Study
 
 
 @dataclass(frozen=True)
 class Arrived:
-    """Who has come in. ``token`` is None for somebody known: it was given out the first time."""
+    """Who has come in. ``token`` is None for somebody known by link or person: they have theirs."""
 
     participant: Participant
-    token: str | None
+    token: str | None = None
 
 
 def enter(
@@ -34,14 +37,16 @@ def enter(
     arrival: Mapping[str, str] | None = None,
     person_key: str | None = None,
     link: str | None = None,
+    token: str | None = None,
     simulated: bool = False,
     language: str | None = None,
     device: Mapping[str, Any] | None = None,
 ) -> Arrived:
     """Enrol somebody, or find them again.
 
-    ``arrival`` is what their address brought, as it is to be stored; ``person_key`` and ``link``
-    tell who came before. Raises LinkUsedError for a link that lets nobody in any more.
+    ``arrival`` is what their address brought, as it is to be stored; ``person_key``, ``link`` and
+    ``token``, which is theirs from now on, tell who came before. Raises LinkUsedError for a link
+    that lets nobody in any more, and FormUsedError for the token of somebody who has gone on.
     """
     with db.writing() as session:
         # All versions of the study: whoever began one is known in the next.
@@ -51,7 +56,9 @@ def enter(
         opened = _unused_or_mine(session, link)
         found = _known(session, person_key, opened)
         if found is not None:
-            return Arrived(record_of(found), None)
+            return Arrived(record_of(found))
+        if token is not None and (found := _just_enrolled(session, token)) is not None:
+            return Arrived(record_of(found), token)
         enrolment = enrol(
             db,
             study,
@@ -59,6 +66,7 @@ def enter(
             language=language,
             recruited_by=_recruited_by(arrival, link),
             device=device,
+            token=token,
         )
         row = session.get_one(ParticipantRow, enrolment.participant.id)
         row.arrival, row.person_key = dict(arrival) if arrival else None, person_key
@@ -97,6 +105,19 @@ def _known(session: Session, person_key: str | None, link: LinkRow | None) -> Pa
 
 def _person(session: Session, person_key: str) -> ParticipantRow | None:
     return session.scalar(select(ParticipantRow).where(ParticipantRow.person_key == person_key))
+
+
+def _just_enrolled(session: Session, token: str) -> ParticipantRow | None:
+    """Return whom a token has enrolled; a form is theirs only until they go on from it.
+
+    At a shared computer the form of whoever sat there before may be a press on "Back" away.
+    """
+    row = session.scalar(
+        select(ParticipantRow).where(ParticipantRow.token_hash == token_hash(token))
+    )
+    if row is not None and has_gone_on(session, row.id):
+        raise FormUsedError("this form was used; whoever sent it has gone on since")
+    return row
 
 
 def _recruited_by(arrival: Mapping[str, str] | None, link: str | None) -> str:

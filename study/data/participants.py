@@ -64,14 +64,15 @@ def enrol(
     language: str | None = None,
     recruited_by: str = "link",
     device: Mapping[str, Any] | None = None,
+    token: str | None = None,
 ) -> Enrolment:
     """Add a participant. ``device`` describes screen and browser; the table's column names are
     ``screen_width``, ``screen_height``, ``pixel_ratio`` and ``user_agent_family``.
 
-    With ``rng`` pseudonym and seed can be repeated; the token never can.
+    With ``rng`` pseudonym and seed can be repeated; the token cannot, unless it is given.
     """
     drawn = rng or np.random.default_rng(secrets.randbits(128))
-    token = secrets.token_urlsafe(32)
+    token = token or secrets.token_urlsafe(32)
     now = db.now()
     with db.writing() as session:
         row = ParticipantRow(

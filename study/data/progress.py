@@ -12,7 +12,6 @@ from typing import Any, Final, Literal
 
 from study.data import consents, events, pauses, trials
 from study.data.checks import CHECKS, done_checks, wanted
-from study.data.consents import CONSENTED
 from study.data.database import Database
 from study.data.events import Recorded
 from study.data.participants import Participant, locked
@@ -103,19 +102,6 @@ def early_step(
         open_checks = (name for name in wanted(definition) if name not in done)
         return next(open_checks, "instructions")
     return "preparing" if row.begun_at is None else None
-
-
-def give_consent(
-    db: Database, participant: Participant, *, key: str, payload: Mapping[str, Any] | None = None
-) -> Recorded:
-    """Record that the participant agrees to the consent text of their study's version."""
-    consent = by_id(db, participant.study_id).definition.consent
-    kept = {**(payload or {}), "consent_version": consent.version}
-    with db.writing() as session:
-        row = locked(session, participant)
-        now = db.now()
-        row.consented_at = row.consented_at or now
-        return Recorded(events.add(session, row, key=key, kind=CONSENTED, payload=kept, now=now))
 
 
 def store_about(

@@ -31,6 +31,10 @@ class TooManyError(RefusedError):
         super().__init__(f"too many requests; try again in {wait_s} s")
 
 
+class FormUsedError(RefusedError):
+    """A consent form whose participant has gone on since: it is somebody else's, or an old one."""
+
+
 class StudyConflictError(RefusedError):
     """A study's file was changed after people took part, without a new version."""
 

@@ -63,7 +63,9 @@ class Person(Visit):
     async def _agree(self) -> None:
         count = len(re.findall(r'name="agree"', self.page))
         version = html.unescape(self.found(r'name="version" value="([^"]*)"'))
-        fields = {"version": version, "agree": [str(n + 1) for n in range(count)]}
+        ticket = html.unescape(self.found(r'name="ticket" value="([^"]*)"'))
+        agreed = [str(n + 1) for n in range(count)]
+        fields = {"version": version, "ticket": ticket, "agree": agreed}
         await self.post("/consent", fields, kind="consent")
 
     async def _tell(self) -> None:

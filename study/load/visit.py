@@ -22,6 +22,7 @@ from study.load.wire import Answered, Wire
 
 RETRY_S: Final = (0.05, 0.1, 0.2, 0.4, 0.8)
 MAX_TRIES: Final = 200
+PARTICIPANT_COOKIE: Final = "ocularist_participant"
 LATER: Final = (408, 425, 429, 500, 502, 503, 504)
 Send = Callable[[], Awaitable[Answered]]
 Note = Callable[[str, float, int], None]
@@ -98,13 +99,13 @@ class Visit:
         try:
             answered = await self._once(kind, lambda: self.wire.post_form(path, sent))
         except OSError:
-            await self.open("/continue" if self.wire.cookies else "/consent")
+            await self.open(self._back)
             return
         if answered.status in (302, 303):
             await self.open(_path(answered))
         elif answered.status in LATER:
             await asyncio.sleep(RETRY_S[-1])
-            await self.open("/continue" if self.wire.cookies else "/consent")
+            await self.open(self._back)
         else:
             raise StuckError(f"{path}: the site answered {answered.status} to a form")
 
@@ -149,6 +150,10 @@ class Visit:
             raise
         self.note(kind, time.perf_counter() - started, answered.status)
         return answered
+
+    @property
+    def _back(self) -> str:
+        return "/continue" if PARTICIPANT_COOKIE in self.wire.cookies else "/consent"
 
     @property
     def _has_csrf(self) -> bool:

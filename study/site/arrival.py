@@ -1,13 +1,16 @@
 """What brings somebody here: parameters of their address, or a personal link.
 
-It waits in a signed cookie until they agree to take part; before that nothing is stored.
+It waits in a signed cookie until they agree to take part; before that nothing is stored. With it
+waits the ticket of their consent form: a form that is sent again, or opened and filled in again,
+because its answer was lost on the way, enrols the same participant and not another one.
 """
 
 from __future__ import annotations
 
 import re
+import secrets
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Final
 
 from fastapi import Depends, Request, Response
@@ -23,16 +26,23 @@ ARRIVAL_COOKIE: Final = "ocularist_arrival"
 
 @dataclass(frozen=True)
 class Arrival:
-    """Parameter -> value, and the token of a personal link, if one was opened."""
+    """Parameter -> value, the token of a personal link if one was opened, the form's ticket."""
 
     values: Mapping[str, str] = field(default_factory=dict)
     link: str | None = None
+    ticket: str = ""
+
+    def with_ticket(self) -> Arrival:
+        """Return it with a ticket: its own, or a new one."""
+        return self if self.ticket else replace(self, ticket=secrets.token_urlsafe(24))
 
 
 def arrival_of(request: Request, here: Here) -> Arrival:
     """Return what brought whoever asks; nothing for somebody who just came."""
     found = read_arrival(here.secret, request.cookies.get(ARRIVAL_COOKIE, ""))
-    return Arrival(found.get("values", {}), found.get("link")) if found else Arrival()
+    if found is None:
+        return Arrival()
+    return Arrival(found.get("values", {}), found.get("link"), found.get("ticket", ""))
 
 
 Arrived = Annotated[Arrival, Depends(arrival_of)]
@@ -63,6 +73,11 @@ def person_key(secret: str, study: Study, values: Mapping[str, str]) -> str | No
     return keyed_hash(secret, "person", study.key, *(values[name] for name in names))
 
 
+def token_of(secret: str, study: Study, ticket: str) -> str:
+    """Return the token of whom a ticket enrols: known from the ticket to this site alone."""
+    return keyed_hash(secret, "ticket", study.key, ticket)
+
+
 def to_store(secret: str, study: Study, values: Mapping[str, str]) -> dict[str, str]:
     """Return the parameters as the study file lets them be kept: plain, or as a keyed hash."""
     return {
@@ -81,8 +96,16 @@ def to_first_page(
     language = request.query_params.get("lang", "")
     is_tag = re.fullmatch(r"[A-Za-z0-9-]{1,20}", language) is not None
     answer = redirect(f"/?lang={language}" if is_tag else "/")
-    cookie = sign_arrival(here.secret, {"values": dict(arrival.values), "link": arrival.link})
-    remember(request, answer, ARRIVAL_COOKIE, cookie, ARRIVAL_S)
+    before = arrival_of(request, here)
+    if (before.values, before.link) == (arrival.values, arrival.link):  # by the same way again
+        arrival = before
+    keep_arrival(request, answer, here, arrival)
     if is_someone_else:
         answer.delete_cookie(PARTICIPANT_COOKIE)
     return answer
+
+
+def keep_arrival(request: Request, answer: Response, here: Here, arrival: Arrival) -> None:
+    """Leave what brought somebody here with their browser."""
+    told = {"values": dict(arrival.values), "link": arrival.link, "ticket": arrival.ticket}
+    remember(request, answer, ARRIVAL_COOKIE, sign_arrival(here.secret, told), ARRIVAL_S)

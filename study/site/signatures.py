@@ -92,6 +92,17 @@ def read_arrival(secret: str, cookie: str) -> dict[str, Any] | None:
     return found if isinstance(found, dict) else None
 
 
+def sign_ticket(secret: str, ticket: str) -> str:
+    """Return what a consent form carries: the name of the participant whom it is to enrol."""
+    return _serializer(secret, "ticket").dumps(ticket)
+
+
+def read_ticket(secret: str, text: str) -> str | None:
+    """Return the ticket of a consent form, or None when it is not ours or too old."""
+    found = _load(_serializer(secret, "ticket"), text, ARRIVAL_S)
+    return found if isinstance(found, str) else None
+
+
 def keyed_hash(secret: str, *parts: str) -> str:
     """Return 64 hexadecimal digits that only this installation can compute."""
     message = "\x1f".join(parts).encode("utf-8", "replace")

@@ -260,8 +260,9 @@ class Guest:
 
     def post(self, path: str, **fields: Any) -> httpx.Response:
         """Send a form of the last page, with its proof."""
-        if 'name="csrf"' in self.page.text:
-            fields = {"csrf": self.hidden("csrf"), **fields}
+        for proof in ("csrf", "ticket"):
+            if f'name="{proof}"' in self.page.text:
+                fields = {proof: self.hidden(proof), **fields}
         self.page = self.client.post(path, data=fields)
         return self.page
 

@@ -13,7 +13,7 @@ import pytest
 
 from renderer.manifest import ClipRecord, Manifest, read_manifest, write_manifest
 from renderer.sources import code_version
-from study.data import answers, arms, participants, progress, studies, views
+from study.data import answers, arms, consents, participants, progress, studies, views
 from study.data.database import Database, open_database
 from study.data.participants import Participant
 from study.data.studies import Study
@@ -149,7 +149,7 @@ class Walk:
     play: dict[str, Any] = field(default_factory=lambda: dict(PLAY))
 
     def consent(self) -> None:
-        progress.give_consent(self.db, self.participant, key="consent")
+        consents.give_consent(self.db, self.participant, key="consent")
 
     def about(self, **given: object) -> None:
         progress.store_about(self.db, self.participant, given, key="about")

@@ -98,7 +98,7 @@ def test_nothing_is_stored_about_somebody_who_withdrew(db: Database, walk: Any) 
     attempts: list[Callable[[], object]] = [
         lambda: events.record(db, walk.participant, key="x", kind="problem"),
         lambda: answers.store(db, walk.participant, 1, {}, key="x"),
-        lambda: progress.give_consent(db, walk.participant, key="x"),
+        lambda: consents.give_consent(db, walk.participant, key="x"),
         lambda: participants.seen(db, walk.participant, device={}),
     ]
     for attempt in attempts:
@@ -131,7 +131,7 @@ def test_a_personal_link_is_spent_even_if_its_person_withdrew(db: Database, stud
 
 
 def test_consent_to_health_data_goes_too(db: Database, walk: Any) -> None:
-    progress.give_consent(db, walk.participant, key="consent", payload={"health": True})
+    consents.give_consent(db, walk.participant, key="consent", payload={"health": True})
     assert consents.allows_health(db, walk.participant)
     erasure.withdraw(db, walk.participant)
     assert not consents.allows_health(db, walk.participant)

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from study.data import arms, completion, events, participants, progress, studies, trials
+from study.data import arms, completion, consents, events, participants, progress, studies, trials
 from study.data.database import Database
 from study.data.refusals import NotReachedError
 from study.data.studies import Study
@@ -84,7 +84,7 @@ def test_a_step_sent_twice_is_one_step(walk: Any) -> None:
     walk.begin()
     before = events.history(walk.db, walk.participant)
     repeated = [
-        progress.give_consent(walk.db, walk.participant, key="consent"),
+        consents.give_consent(walk.db, walk.participant, key="consent"),
         progress.store_about(walk.db, walk.participant, {"age": "44"}, key="about"),
         progress.finish_instructions(walk.db, walk.participant, key="instructions"),
         progress.begin(walk.db, walk.participant, key="begin"),
@@ -105,7 +105,7 @@ def test_beginning_twice_with_different_keys_lays_out_trials_once(walk: Any) -> 
 def test_going_back_to_an_early_page_leads_to_the_present_one(walk: Any) -> None:
     walk.begin()
     walk.answer(1)
-    progress.give_consent(walk.db, walk.participant, key="consent-2")
+    consents.give_consent(walk.db, walk.participant, key="consent-2")
     progress.finish_instructions(walk.db, walk.participant, key="instructions-2")
     assert step(walk) == "trial"
 
@@ -113,7 +113,7 @@ def test_going_back_to_an_early_page_leads_to_the_present_one(walk: Any) -> None
 def test_consent_is_stored_with_its_version_and_time(walk: Any, clock: Any) -> None:
     when = clock.now
     payload = {"statements": 2, "consent_version": "forged"}
-    progress.give_consent(walk.db, walk.participant, key="c", payload=payload)
+    consents.give_consent(walk.db, walk.participant, key="c", payload=payload)
     (event,) = events.history(walk.db, walk.participant)
     assert (event.kind, event.created_at) == ("consented", when)
     assert event.payload == {"statements": 2, "consent_version": "3"}
@@ -145,7 +145,7 @@ def test_a_study_without_questions_about_you_goes_on_to_the_instructions(
 ) -> None:
     other = studies.register(db, parse_definition({**raw, "key": "other", "about": []}))
     person = participants.enrol(db, other).participant
-    progress.give_consent(db, person, key="c")
+    consents.give_consent(db, person, key="c")
     assert progress.current_step(db, person).name == "instructions"
     progress.finish_instructions(db, person, key="i")
     leased = arms.assign(db, person, available=all_arms(other.definition))
