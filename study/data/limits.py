@@ -30,17 +30,19 @@ class Limit:
 
 JOINING: Final = Limit("joining", 600, timedelta(minutes=10))
 """Newcomers from one address: a full lecture hall behind one address stays below."""
+REPORTING: Final = Limit("reporting", 600, timedelta(minutes=1))
+"""What one participant's browser reports: nobody answers half as fast."""
 
 
-def count(db: Database, limit: Limit, who: str) -> None:
-    """Count that somebody does it once more; raises TooManyError if that is too often."""
+def count(db: Database, limit: Limit, who: str, *, times: int = 1) -> None:
+    """Count that somebody does it so many times more; raises TooManyError if it is too often."""
     now = db.now()
-    insert = _insert(db).values(kind=limit.kind, who=who, since=now, count=1)
+    insert = _insert(db).values(kind=limit.kind, who=who, since=now, count=times)
     is_over = LimitRow.since <= now - limit.per
     query = insert.on_conflict_do_update(
         index_elements=["kind", "who"],
         set_={
-            "count": case((is_over, 1), else_=LimitRow.count + 1),
+            "count": case((is_over, times), else_=LimitRow.count + times),
             "since": case((is_over, now), else_=LimitRow.since),
         },
     ).returning(LimitRow.count, LimitRow.since)
@@ -48,8 +50,8 @@ def count(db: Database, limit: Limit, who: str) -> None:
         session.execute(
             delete(LimitRow).where(LimitRow.kind == limit.kind, is_over, LimitRow.who != who)
         )
-        times, since = session.execute(query).one()
-    if times > limit.most:
+        total, since = session.execute(query).one()
+    if total > limit.most:
         raise TooManyError(max(1, math.ceil((since + limit.per - now).total_seconds())))
 
 

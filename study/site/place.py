@@ -11,13 +11,16 @@ import jinja2
 from fastapi import Depends, Request
 from fastapi.responses import HTMLResponse
 
-from study.data import studies
+from study.data import limits, studies
 from study.data.database import Database
 from study.data.studies import Study
+from study.data.writer import Writer
 from study.settings import Settings
 from study.site.media import ClipShelf
 from study.site.pace import Pace
+from study.site.parts import PartsShelf
 from study.site.resources import folder_version, resource_folder
+from study.site.signatures import who_hash
 from study.texts import first_spoken
 
 
@@ -34,12 +37,14 @@ class Place:
     study_id: int | None
     clips: ClipShelf
     secret: str
-    pace: Pace = field(default_factory=Pace)
     static_folder: Path = field(default_factory=lambda: resource_folder("static"))
 
     def __post_init__(self) -> None:
         self.static_version = folder_version(self.static_folder)
         self.pages = _environment(self.static_version)
+        self.parts = PartsShelf(self.pages)
+        self.writer = Writer(self.db)
+        self.pace = Pace(self._count_reports)
 
     def study(self, wishes: Sequence[str] = ()) -> Study:
         """Return the study that newcomers take part in, in the language that serves them best."""
@@ -54,6 +59,10 @@ class Place:
         if found is None:
             raise NoStudyError("there is no study in this database yet; start: ocularist run")
         return found
+
+    def _count_reports(self, name: str, times: int) -> None:
+        who = who_hash(self.secret, name)
+        limits.count(self.db, limits.REPORTING, who, times=times)
 
     def page(self, template: str, *, status: int = 200, **values: Any) -> HTMLResponse:
         """Render a template into a page."""

@@ -29,9 +29,9 @@ def is_csrf_token(secret: str, credential: str, given: str) -> bool:
     return hmac.compare_digest(csrf_token(secret, credential).encode(), given.encode())
 
 
-def who_hash(secret: str, address: str) -> str:
-    """Return a name for an address that nobody without the secret can turn back."""
-    return hmac.new(secret.encode(), f"address:{address}".encode(), hashlib.sha256).hexdigest()
+def who_hash(secret: str, who: str) -> str:
+    """Return a name for an address or a person that nobody without the secret can turn back."""
+    return hmac.new(secret.encode(), f"address:{who}".encode(), hashlib.sha256).hexdigest()
 
 
 def simulation_token(secret: str) -> str:
