@@ -25,7 +25,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any, ParamSpec, TypeVar
 
-from study.commands.starting import ending_with_parent
+from study.commands.starting import end_with_parent
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -129,7 +129,7 @@ def _leave_interrupts_to_others() -> None:
 
 def _begin(*, parent: int, threads: int, scratch: str) -> None:
     """Set up a process before its first call."""
-    ending_with_parent()()
+    end_with_parent()
     if os.getppid() != parent:  # it died before we could ask to end with it
         os._exit(1)
     os.environ.setdefault("LP_NUM_THREADS", str(threads))  # Mesa's llvmpipe

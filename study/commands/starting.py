@@ -5,10 +5,11 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
+import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
@@ -54,24 +55,26 @@ def start_command(
     process lives in its own session, so that Ctrl-C reaches its keeper alone, and ends with its
     keeper even if that is killed.
     """
-    end_with_parent = ending_with_parent()
-
-    def prepare() -> None:
-        end_with_parent()
-        os.nice(niceness)
-
+    nice = ["nice", "-n", str(niceness)] if niceness else []
     return subprocess.Popen(
-        [sys.executable, "-m", "study", *arguments],
+        [*nice, *ending_with_parent(), sys.executable, "-m", "study", *arguments],
         stdin=subprocess.DEVNULL,
         env={**os.environ, **(environment or {})},
         start_new_session=True,
-        preexec_fn=prepare,  # noqa: PLW1509 - two system calls, no lock
     )
 
 
-def ending_with_parent() -> Callable[[], object]:
-    """Return what a child calls to be sent SIGTERM when its parent dies; Linux alone can."""
+def ending_with_parent() -> list[str]:
+    """Return what stands before a command whose process ends when its parent dies; Linux alone."""
+    program = shutil.which("setpriv")
+    if program is None:
+        return []
+    # A parent that died before the child could ask is no longer the child's parent.
+    still_there = '[ "$PPID" = "$0" ] && exec "$@"'
+    return [program, "--pdeathsig", "TERM", "--", "sh", "-c", still_there, str(os.getpid())]
+
+
+def end_with_parent() -> None:
+    """Have this process sent SIGTERM when its parent dies; Linux alone can."""
     with contextlib.suppress(OSError, AttributeError):
-        prctl = ctypes.CDLL(None).prctl
-        return lambda: prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
-    return lambda: None
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -76,12 +76,11 @@ class TemporaryServer:
         options = [part for setting in settings for part in ("-c", setting)]
         with (self.folder / "log").open("ab") as log:
             self.process = subprocess.Popen(
-                [self._programs / "postgres", "-D", self._data, *options],
+                [*ending_with_parent(), self._programs / "postgres", "-D", self._data, *options],
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=log,
                 start_new_session=True,  # Ctrl-C reaches its keeper alone
-                preexec_fn=ending_with_parent(),  # noqa: PLW1509 - one system call, no lock
                 **self._account,
             )
         deadline = time.monotonic() + UP_S

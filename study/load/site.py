@@ -95,13 +95,12 @@ class LoadedSite:
             arguments += ["--processes", str(self.processes)]
         with (self.folder / "log").open("ab") as log:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "study", *arguments],
+                [*ending_with_parent(), sys.executable, "-m", "study", *arguments],
                 env={**os.environ, **self.environment, "OCULARIST_DATABASE": self.database_url},
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=log,
                 start_new_session=True,
-                preexec_fn=ending_with_parent(),  # noqa: PLW1509 - one system call, no lock
             )
 
     async def wait(self) -> None:
