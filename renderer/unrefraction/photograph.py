@@ -69,8 +69,8 @@ def read_photograph(path: Path, *, focal_mm: float | None = None) -> Photograph:
     data = path.read_bytes()
     notes: list[str] = []
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
             with Image.open(io.BytesIO(data)) as opened:
                 if opened.width * opened.height > LARGEST_MPX * 1e6:
                     raise PhotographError(
@@ -80,6 +80,7 @@ def read_photograph(path: Path, *, focal_mm: float | None = None) -> Photograph:
                 opened.load()
                 focal_px = _focal_px(opened, focal_mm)
                 pixels = _decoded(opened, data, notes)
+        notes += sorted({f"Pillow warns: {one.message}" for one in said})
     except UnidentifiedImageError:
         raise PhotographError(
             f"{path}: is no picture that Pillow can open; JPEG, PNG, TIFF and WebP are accepted"

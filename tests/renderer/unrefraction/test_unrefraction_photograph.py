@@ -81,6 +81,14 @@ def test_transparent_grey_and_palette_pictures_are_read(tmp_path: Path) -> None:
     assert read_photograph(tmp_path / "p.png").pixels.shape == (40, 60, 3)
 
 
+def test_what_pillow_warns_of_is_passed_on(tmp_path: Path) -> None:
+    cut_off = b"Exif\0\0MM\0*\0\0\0\x08\0\x05"  # promises five entries and has none
+    Image.fromarray(picture()).save(tmp_path / "a.jpg", exif=cut_off)
+    notes = read_photograph(tmp_path / "a.jpg").notes
+    assert len(notes) == 1
+    assert notes[0].startswith("Pillow warns: Corrupt EXIF data")
+
+
 def test_what_is_no_photograph_is_refused_in_words(tmp_path: Path) -> None:
     buffer = io.BytesIO()
     Image.fromarray(picture(400, 600)).save(buffer, "JPEG")
