@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,15 +18,29 @@ from analysis.parsing import TableError
 
 _TEXT: Final = ("renderer", "distance")
 _NUMBERS: Final = ("iris_px", "eyes", "ms_median", "ms_mad", "n")
-COLUMNS: Final = ("renderer", "size", "eyes", "distance", "iris_px", "lod", "ms_median", "ms_mad")
+COLUMNS: Final = (
+    *("renderer", "size", "eyes", "distance", "iris_px", "lod"),
+    *("ms_median", "ms_mad", "n"),
+)
+EFFECT_COLUMNS: Final = (
+    *("renderer", "size", "eyes", "distance", "effect", "level", "base"),
+    *("ms_median", "ms_mad", "n"),
+)
+_NO_EFFECTS: Final = pd.DataFrame(columns=list(EFFECT_COLUMNS))
 
 
 @dataclass(frozen=True)
 class Costs:
-    """Milliseconds per frame of each LoD at each distance, under one stated condition."""
+    """Milliseconds per frame of each LoD at each distance, under one stated condition.
+
+    ``eyes`` is how many eyes of the LoD a frame held. ``effects`` are what single effects cost: a
+    frame with the effect at a level minus the same frame without it.
+    """
 
     table: pd.DataFrame
     condition: str
+    eyes: float = 1.0
+    effects: pd.DataFrame = field(default_factory=_NO_EFFECTS.copy)
 
     def ms(self, distance: str, lod: str) -> float | None:
         """Return the median milliseconds per frame, None where it was not measured."""
@@ -38,9 +52,10 @@ class Costs:
 def read_bench(path: str | Path) -> Costs:
     """Read the cost of each LoD from ``bench.json``: a list of rows, or an object with ``rows``.
 
-    Only rows of the part "lods" count, and rows without a part: a LoD among a crowd, say, is
-    another condition. Of several renderers, sizes and numbers of eyes it takes the largest picture
-    with the most eyes of the renderer named last. Raises TableError with every fault of the file.
+    LoDs are taken from the part "lods" and from rows without a part: a LoD among a crowd, say, is
+    another condition; effects from the part "effects". Of several renderers, sizes and numbers of
+    eyes it takes the largest picture with the most eyes of the renderer named last. Raises
+    TableError with every fault of the file.
     """
     place = Path(path)
     try:
@@ -99,13 +114,31 @@ def _pixels(size: str) -> int:
 
 def _chosen(rows: list[dict[str, Any]]) -> Costs:
     lods = [{**row, "size": _size(row["size"])} for row in rows if _is_lods(row)]
+    effects = _effects(rows)
     if not lods:
-        return Costs(pd.DataFrame(columns=list(COLUMNS)), "no LoD was measured")
+        nothing = pd.DataFrame(columns=list(COLUMNS))
+        return Costs(nothing, "no LoD was measured", effects=effects)
     renderer = lods[-1]["renderer"]
     own = [row for row in lods if row["renderer"] == renderer]
     size = max((row["size"] for row in own), key=_pixels)
     eyes = max(row["eyes"] for row in own if row["size"] == size)
     chosen = [row for row in own if row["size"] == size and row["eyes"] == eyes]
     table = pd.DataFrame(chosen)[list(COLUMNS)]
-    number = "one eye" if eyes == 1 else f"{eyes:g} eyes"
-    return Costs(table, f"{number}, {size} pixels, {renderer}")
+    return Costs(table, f"{eyes_in_words(eyes)}, {size} pixels, {renderer}", eyes, effects)
+
+
+def eyes_in_words(count: float) -> str:
+    """Write how many eyes a frame holds."""
+    return "one eye" if count == 1 else f"{count:g} eyes"
+
+
+def _effects(rows: list[dict[str, Any]]) -> pd.DataFrame:
+    """Return the rows of single effects that are complete, the last of equal ones."""
+    own = [
+        {**{name: row.get(name) for name in EFFECT_COLUMNS}, "size": _size(row.get("size"))}
+        for row in rows
+        if row.get("part") == "effects" and all(_is_measure(row.get(n)) for n in ("eyes", "n"))
+    ]
+    table = pd.DataFrame(own, columns=list(EFFECT_COLUMNS))
+    keys = ["effect", "level", "base", "distance"]
+    return table.dropna(subset=["ms_median", "ms_mad", *keys]).drop_duplicates(keys, keep="last")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import platform
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 
 import pandas as pd
 
@@ -12,6 +12,7 @@ from analysis.cost import Costs
 from analysis.descriptive import answered
 from analysis.inference import SEED
 from analysis.reading import Tables
+from analysis.versions import own_version
 
 _PACKAGES = ("numpy", "scipy", "pandas", "matplotlib")
 
@@ -91,12 +92,9 @@ def _questions(tables: Tables) -> str:
 
 
 def _versions() -> str:
-    try:
-        own = version("ocularist")
-    except PackageNotFoundError:  # run from a source tree that was never installed
-        own = "from source"
     others = ", ".join(f"{name} {version(name)}" for name in _PACKAGES)
-    return f"Computed by Ocularist {own} with Python {platform.python_version()}, {others}."
+    python = platform.python_version()
+    return f"Computed by Ocularist {own_version()} with Python {python}, {others}."
 
 
 def _data(tables: Tables) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -26,6 +27,9 @@ class Curves:
     def of(self, kind: str, measure: Measure = PIXELS) -> dict[str, SizeCurve]:
         """Return the curves of one kind over one measure, by LoD."""
         return {c.lod: c for c in self.curves if c.kind == kind and c.measure == measure}
+
+
+NO_CURVES: Final = Curves()
 
 
 def curves_of(

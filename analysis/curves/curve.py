@@ -154,6 +154,16 @@ def curve_table(curves: Sequence[SizeCurve]) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
+def point_table(curves: Sequence[SizeCurve]) -> pd.DataFrame:
+    """Return what was observed at each size, as curve-points.csv has it."""
+    parts = [curve.points.assign(**_named(curve)) for curve in curves if len(curve.points)]
+    names = ["kind", "measure", "lod", "best"]
+    if not parts:
+        return pd.DataFrame(columns=names)
+    table = pd.concat(parts, ignore_index=True)
+    return table[[*names, *(name for name in table if name not in names)]]
+
+
 def threshold_table(curves: Sequence[SizeCurve]) -> pd.DataFrame:
     """Return the curves' thresholds, as thresholds.csv has them.
 
@@ -162,7 +172,7 @@ def threshold_table(curves: Sequence[SizeCurve]) -> pd.DataFrame:
     rows = []
     for curve in curves:
         for own in curve.thresholds:
-            row = {**_named(curve), "threshold": own.name, "level": own.level}
+            row: dict[str, object] = {**_named(curve), "threshold": own.name, "level": own.level}
             for name in ("size", "low", "high", "safe"):
                 value = getattr(own, name)
                 row |= {name: value if own.where(value) == SHOWN else np.nan}
@@ -172,7 +182,7 @@ def threshold_table(curves: Sequence[SizeCurve]) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _named(curve: SizeCurve) -> dict[str, object]:
+def _named(curve: SizeCurve) -> dict[str, str]:
     return {
         "kind": curve.kind,
         "measure": curve.measure.column,

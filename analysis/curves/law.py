@@ -1,14 +1,16 @@
 """The law of sizes: a difference shows as A Phi((x - m) / w), x the log2 of the iris's size.
 
-Every LoD has its own greatest difference A and the size m at which half of it shows; how fast it
-comes, w octaves, is shared, because a handful of distances says little of each LoD's own. What a
-person answers given that difference is an ordinal model, with the person's own criterion.
+Every LoD has its own greatest difference A, size m at which half of it shows, and octaves w over
+which it comes; where a handful of sizes says little of them, the priors do (``models.priors``: w
+about one octave). What a person answers given that difference is an ordinal model, with the
+person's own criterion.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import reduce
 from typing import Final
 
 import numpy as np
@@ -17,11 +19,12 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analysis.curves.sizes import Measure
+from analysis.models.combined import Renamed, Together
 from analysis.models.counts import Counts, count_answers
 from analysis.models.draws import draw
 from analysis.models.fitting import OrdinalFit, fit
 from analysis.models.ordinal import OrdinalModel
-from analysis.models.predictors import Saturating
+from analysis.models.predictors import Predictor, Saturating
 from analysis.models.priors import PRIORS
 
 Floats = NDArray[np.float64]
@@ -32,7 +35,7 @@ _HEIGHT: Final = 50.0  # greater differences than any answer could tell
 class SizeLaw:
     """The fitted law of several LoDs against the best.
 
-    ``sizes`` are the log2 sizes at which each LoD was shown, ``middles`` names the parameters of m.
+    ``sizes`` are the log2 sizes at which each LoD was shown.
     """
 
     measure: Measure
@@ -54,9 +57,7 @@ class SizeLaw:
         )
 
     def _difference(self, parameters: Floats, lod: str, x: Floats) -> Floats:
-        height, middle, width = (
-            parameters[:, self.at(name)] for name in (*own_names(lod), "log_width")
-        )
+        height, middle, width = (parameters[:, self.at(name)] for name in own_names(lod))
         z = (x - middle[:, None]) / np.exp(width)[:, None]
         return np.asarray(np.minimum(np.exp(height), _HEIGHT)[:, None] * ndtr(z))
 
@@ -74,9 +75,9 @@ class SizeLaw:
         return model.thresholds(parameters), np.hypot(1.0, model.spreads(parameters)[:, 0])
 
 
-def own_names(lod: str) -> tuple[str, str]:
-    """Return the names of a LoD's own two parameters."""
-    return f"log_height:{lod}", f"middle:{lod}"
+def own_names(lod: str) -> tuple[str, str, str]:
+    """Return the names of a LoD's own parameters."""
+    return f"log_height:{lod}", f"middle:{lod}", f"log_width:{lod}"
 
 
 def sizes_by_lod(lods: pd.Series, sizes: pd.Series, *, best: str) -> dict[str, Floats]:
@@ -100,11 +101,15 @@ def count_rows(rows: pd.DataFrame, keys: list[str], answer: pd.Series, categorie
     return Counted(table[keys].reset_index(drop=True), counts, tuple(str(p) for p in people))
 
 
-def saturating(table: pd.DataFrame, lod: str, lods: tuple[str, ...]) -> Saturating:
+def law_predictor(table: pd.DataFrame, lod: str, lods: tuple[str, ...]) -> Predictor:
     """Return the law's predictor: sizes from ``size``, LoDs from the column ``lod``."""
-    numbers = {name: i for i, name in enumerate(lods)}
-    group = np.array([numbers.get(name, -1) for name in table[lod]], dtype=np.intp)
-    return Saturating(table["size"].to_numpy(dtype=float), group, lods)
+    sizes, shown = table["size"].to_numpy(dtype=float), table[lod].to_numpy(dtype=object)
+
+    def of(name: str) -> Predictor:
+        group = np.where(shown == name, 0, -1).astype(np.intp)
+        return Renamed(Saturating(sizes, group, (name,)), own_names(name))
+
+    return reduce(Together, map(of, lods))
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from analysis.curves.curve import (
     make_threshold,
     with_interval,
 )
-from analysis.curves.law import SizeLaw, count_rows, fit_law, saturating, sizes_by_lod
+from analysis.curves.law import SizeLaw, count_rows, fit_law, law_predictor, sizes_by_lod
 from analysis.curves.observed import share_points
 from analysis.curves.sizes import Measure, along, with_size
 from analysis.decision.margins import Margins
@@ -52,7 +52,7 @@ def noticed_law(
     kept["size"] = kept["size"].where(kept["lod"] != "", 0.0)  # equal pairs: one stimulus
     grade = kept["noticed"].map({word: i for i, word in enumerate(reversed(GRADES))})
     counted = count_rows(kept, ["lod", "size"], grade, len(GRADES))
-    predictor = saturating(counted.table, "lod", tuple(sizes))
+    predictor = law_predictor(counted.table, "lod", tuple(sizes))
     model = OrdinalModel(predictor, len(GRADES), (LENIENCY,))
     return fit_law(model, counted, measure, rng, best=best, sizes=sizes, weights=weights)
 

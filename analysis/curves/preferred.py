@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analysis.curves.curve import ONE_JOD, PREFERRED, SizeCurve, band, make_threshold, with_interval
-from analysis.curves.law import SizeLaw, count_rows, fit_law, saturating, sizes_by_lod
+from analysis.curves.law import SizeLaw, count_rows, fit_law, law_predictor, sizes_by_lod
 from analysis.curves.noticed import against_best
 from analysis.curves.observed import share_points
 from analysis.curves.sizes import Measure, along
@@ -44,7 +44,7 @@ def preferred_law(
     kept = rows[is_equal | rows["lod"].isin(sizes)].copy()
     kept["size"] = kept["size"].where(kept["lod"] != "", 0.0)
     counted = count_rows(kept, ["lod", "size", "is_right"], kept["comparison"] + 1, 3)
-    law = saturating(counted.table, "lod", tuple(sizes))
+    law = law_predictor(counted.table, "lod", tuple(sizes))
     sign = np.where(counted.table["is_right"].to_numpy(dtype=bool), 1.0, -1.0)
     model = OrdinalModel(Scaled(law, sign), 3, (LENIENCY,))
     return fit_law(model, counted, measure, rng, best=best, sizes=sizes, weights=weights)

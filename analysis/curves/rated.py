@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analysis.curves.curve import MARGIN, RATED, SizeCurve, band, make_threshold
-from analysis.curves.law import Counted, SizeLaw, count_rows, fit_law, saturating, sizes_by_lod
+from analysis.curves.law import Counted, SizeLaw, count_rows, fit_law, law_predictor, sizes_by_lod
 from analysis.curves.observed import loss_points
 from analysis.curves.sizes import Measure, along, with_size
 from analysis.decision.margins import Margins
@@ -77,7 +77,7 @@ def _predictor(counted: Counted, lods: tuple[str, ...], nuisances: list[str]) ->
     names = (*(f"{_OCTAVE}:{octave:g}" for octave in octaves), *nuisances)
 
     def side(column: str) -> Predictor:
-        law = saturating(table, column, lods)
+        law = law_predictor(table, column, lods)
         return Together(Linear(design, names), Scaled(law, np.full(len(table), -1.0)))
 
     partners = table.groupby([_OCTAVE, "lod"])["other_lod"].nunique()

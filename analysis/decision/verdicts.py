@@ -16,9 +16,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from analysis.cost import Costs
 from analysis.decision.margins import DEFAULT, Margins
 from analysis.estimates.noticing import Noticing
 from analysis.estimates.realism import Realism
+from analysis.multiplicity import holm
+from analysis.savings import lod_saving, saving_columns
 
 Floats = NDArray[np.float64]
 EQUIVALENT, DIFFERENT, NOT_SHOWN = "equivalent", "different", "not shown"
@@ -29,12 +32,15 @@ class Test:
     """One quantity against its margin: the estimate, its one-sided bounds, whether it passes.
 
     ``fails`` is True where the lower bound lies beyond the margin: shown to be too much.
+    ``p_beyond`` is the p value of "it is beyond the margin", ``p_within`` that of "it is not".
     """
 
     value: float
     low: float
     high: float
     margin: float
+    p_beyond: float = np.nan
+    p_within: float = np.nan
 
     @property
     def passes(self) -> bool:
@@ -124,7 +130,7 @@ def _decide(
     noticing: Noticing | None,
     margins: Margins,
 ) -> Decision:
-    seen = {lod: _excess(noticing, (distance, lod, best)) for lod in gaps}
+    seen = {lod: excess_of(noticing, (distance, lod, best)) for lod in gaps}
     enough = {
         lod: (gap[1] < margins.realism_points) & _unnoticed(seen[lod], margins, len(gap[1]))
         for lod, gap in gaps.items()
@@ -138,8 +144,9 @@ def _decide(
             distance=distance,
             lod=lod,
             best=best,
-            realism=_test(*gap, margins.realism_points, margins),
-            noticed=None if noticed is None else _test(*noticed, margins.noticed_share, margins),
+            realism=against(*gap, margins.realism_points, confidence=margins.confidence),
+            noticed=noticed
+            and against(*noticed, margins.noticed_share, confidence=margins.confidence),
             is_reached=is_reached,
             share_cheapest=shares[lod],
         )
@@ -150,12 +157,15 @@ def _decide(
     return Decision(distance, best, chosen, tuple(verdicts), max(rest, 0.0))
 
 
-def _test(value: float, draws: Floats, margin: float, margins: Margins) -> Test:
-    low, high = np.quantile(draws, (1 - margins.confidence, margins.confidence))
-    return Test(float(value), float(low), float(high), margin)
+def against(value: float, draws: Floats, margin: float, *, confidence: float) -> Test:
+    """Hold an estimate with its draws (n_draws,) against a margin."""
+    low, high = np.quantile(draws, (1 - confidence, confidence))
+    beyond, count = int((draws >= margin).sum()), len(draws)
+    p_values = ((1 + n) / (1 + count) for n in (beyond, count - beyond))
+    return Test(float(value), float(low), float(high), margin, *p_values)
 
 
-def _excess(noticing: Noticing | None, pair: tuple[str, str, str]) -> tuple[float, Floats] | None:
+def excess_of(noticing: Noticing | None, pair: tuple[str, str, str]) -> tuple[float, Floats] | None:
     """Return the share of yes beyond false alarms for a pair, with draws, where it was shown."""
     if noticing is None:
         return None
@@ -185,29 +195,41 @@ def _cheapest_shares(enough: Mapping[str, NDArray[np.bool_]]) -> dict[str, float
     return dict(zip(names, (down - after).mean(axis=1).tolist(), strict=True))
 
 
-def verdict_table(decisions: list[Decision]) -> pd.DataFrame:
-    """Return one row per distance and LoD, as decision.csv has them."""
+def verdict_table(decisions: list[Decision], costs: Costs | None = None) -> pd.DataFrame:
+    """Return one row per distance and LoD, as decision.csv has them; savings where costs are known.
+
+    ``p_equivalent`` is the p value of "it is not enough" along the sequence down to the LoD, and
+    ``p_equivalent_holm`` the same adjusted over the distances at which the LoD was judged.
+    """
     rows = []
     for decision in decisions:
+        p_value = 0.0
         for verdict in decision.verdicts:
             noticed = verdict.noticed
-            rows.append(
-                {
-                    "distance": decision.distance,
-                    "lod": verdict.lod,
-                    "best": verdict.best,
-                    "verdict": verdict.outcome,
-                    "is_tested": verdict.is_reached,
-                    "realism_loss": verdict.realism.value,
-                    "realism_loss_low": verdict.realism.low,
-                    "realism_loss_high": verdict.realism.high,
-                    "realism_margin": verdict.realism.margin,
-                    "noticed_excess": noticed.value if noticed else np.nan,
-                    "noticed_excess_low": noticed.low if noticed else np.nan,
-                    "noticed_excess_high": noticed.high if noticed else np.nan,
-                    "noticed_margin": noticed.margin if noticed else np.nan,
-                    "share_cheapest": verdict.share_cheapest,
-                    "chosen": decision.lod == verdict.lod,
-                }
-            )
-    return pd.DataFrame(rows)
+            p_value = max(p_value, verdict.realism.p_beyond, noticed.p_beyond if noticed else 1.0)
+            row: dict[str, object] = {
+                "distance": decision.distance,
+                "lod": verdict.lod,
+                "best": verdict.best,
+                "verdict": verdict.outcome,
+                "is_tested": verdict.is_reached,
+                "realism_loss": verdict.realism.value,
+                "realism_loss_low": verdict.realism.low,
+                "realism_loss_high": verdict.realism.high,
+                "realism_margin": verdict.realism.margin,
+                "noticed_excess": noticed.value if noticed else np.nan,
+                "noticed_excess_low": noticed.low if noticed else np.nan,
+                "noticed_excess_high": noticed.high if noticed else np.nan,
+                "noticed_margin": noticed.margin if noticed else np.nan,
+                "share_cheapest": verdict.share_cheapest,
+                "chosen": decision.lod == verdict.lod,
+                "p_equivalent": p_value,
+            }
+            if costs:
+                saving = lod_saving(costs, decision.distance, verdict.lod, best=verdict.best)
+                row |= saving_columns(saving)
+            rows.append(row)
+    table = pd.DataFrame(rows)
+    if rows:
+        table["p_equivalent_holm"] = table.groupby("lod")["p_equivalent"].transform(holm)
+    return table

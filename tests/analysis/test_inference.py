@@ -41,6 +41,9 @@ def test_near_a_cheap_eye_is_different_and_far_it_is_enough(tables: Tables) -> N
         "realism-model",
         "preference-model",
         "noticing-model",
+        "curves",
+        "curve-points",
+        "thresholds",
     }
 
 

@@ -1,0 +1,216 @@
+"""May one effect be left out? A verdict for every LoD without a rank, at every distance.
+
+A study that ablates effects shows the best LoD beside itself with one effect at a lower level. Such
+LoDs have no order, so no sequence protects them: for each LoD the distances' p values are adjusted
+after Holm, and the chance that any of its verdicts is wrong stays below the level. The tests are
+those of the designer's answer: realism not lower by the margin, and not noticed beyond it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import pandas as pd
+
+from analysis.cost import Costs
+from analysis.decision.margins import Margins
+from analysis.decision.verdicts import (
+    DIFFERENT,
+    EQUIVALENT,
+    NOT_SHOWN,
+    Test,
+    against,
+    excess_of,
+)
+from analysis.estimates.noticing import Noticing
+from analysis.estimates.realism import Realism
+from analysis.multiplicity import holm
+from analysis.savings import Saving, effect_saving, lod_saving, saving_columns
+from analysis.table import EFFECTS
+
+Levels = Mapping[str, Mapping[str, str]]
+
+
+@dataclass(frozen=True)
+class Change:
+    """An effect that a LoD lowers, and its levels in the best LoD and in this one."""
+
+    effect: str
+    kept: str
+    left: str
+
+    def __str__(self) -> str:
+        """Write "without caustics", or "subsurface at low"."""
+        if self.left == "off":
+            return f"without {self.effect}"
+        return f"{self.effect} at {self.left}"
+
+
+@dataclass(frozen=True)
+class EffectVerdict:
+    """One LoD without a rank against the best at one distance.
+
+    ``changes`` are what tells it from the best, empty where the levels are not known. ``noticed``
+    is None where the data cannot tell. The p values are adjusted over the LoD's distances.
+    """
+
+    distance: str
+    lod: str
+    best: str
+    changes: tuple[Change, ...]
+    realism: Test
+    noticed: Test | None
+    p_equivalent: float
+    p_different: float
+    level: float
+
+    @property
+    def outcome(self) -> str:
+        """One of the three verdicts."""
+        if self.p_different <= self.level:
+            return DIFFERENT
+        return EQUIVALENT if self.p_equivalent <= self.level else NOT_SHOWN
+
+    @property
+    def name(self) -> str:
+        """What the LoD is: "without caustics", or its name."""
+        return " and ".join(map(str, self.changes)) or self.lod
+
+
+def decide_effects(
+    realism: Realism,
+    noticing: Noticing | None,
+    ranks: Mapping[str, float],
+    *,
+    levels: Levels,
+    margins: Margins,
+) -> list[EffectVerdict]:
+    """Decide on every LoD without a rank at every distance where the best was rated too.
+
+    ``levels`` are each LoD's level of every effect, as far as known.
+    """
+    ranks = margins.order(ranks)
+    rating, draws = realism.expected()
+    places = {cell: i for i, cell in enumerate(realism.cells)}
+    made: dict[str, list[EffectVerdict]] = {}
+    for (distance, lod), own in places.items():
+        best = _best(realism, distance, ranks)
+        if best is None or ranks.get(lod, -1.0) >= 0:
+            continue
+        top = places[distance, best]
+        verdict = _verdict(
+            (distance, lod, best),
+            against(
+                rating[top] - rating[own],
+                draws[:, top] - draws[:, own],
+                margins.realism_points,
+                confidence=margins.confidence,
+            ),
+            noticing,
+            levels=levels,
+            margins=margins,
+        )
+        made.setdefault(lod, []).append(verdict)
+    return [verdict for own in made.values() for verdict in _adjusted(own)]
+
+
+def _best(realism: Realism, distance: str, ranks: Mapping[str, float]) -> str | None:
+    here = [lod for where, lod in realism.cells if where == distance and ranks.get(lod, -1.0) >= 0]
+    return max(here, key=lambda lod: ranks[lod]) if here else None
+
+
+def _verdict(
+    place: tuple[str, str, str],
+    realism: Test,
+    noticing: Noticing | None,
+    *,
+    levels: Levels,
+    margins: Margins,
+) -> EffectVerdict:
+    distance, lod, best = place
+    seen = excess_of(noticing, place)
+    noticed = seen and against(*seen, margins.noticed_share, confidence=margins.confidence)
+    p_equivalent = max(realism.p_beyond, noticed.p_beyond if noticed else 1.0)
+    lesser = [test.p_within for test in (realism, noticed) if test]
+    return EffectVerdict(
+        distance=distance,
+        lod=lod,
+        best=best,
+        changes=_changes(levels.get(lod, {}), levels.get(best, {})),
+        realism=realism,
+        noticed=noticed,
+        p_equivalent=p_equivalent,
+        p_different=min(1.0, len(lesser) * min(lesser)),  # either of the two may show it
+        level=1.0 - margins.confidence,
+    )
+
+
+def _adjusted(verdicts: Sequence[EffectVerdict]) -> list[EffectVerdict]:
+    """Adjust one LoD's p values over its distances."""
+    equivalent = holm([own.p_equivalent for own in verdicts])
+    different = holm([own.p_different for own in verdicts])
+    return [
+        EffectVerdict(
+            **{
+                **vars(own),
+                "p_equivalent": float(equivalent[i]),
+                "p_different": float(different[i]),
+            }
+        )
+        for i, own in enumerate(verdicts)
+    ]
+
+
+def _changes(own: Mapping[str, str], best: Mapping[str, str]) -> tuple[Change, ...]:
+    return tuple(
+        Change(effect, best[effect], own[effect])
+        for effect in EFFECTS
+        if effect in own and effect in best and own[effect] != best[effect]
+    )
+
+
+def levels_of(ratings: pd.DataFrame) -> dict[str, dict[str, str]]:
+    """Return each LoD's level of every effect, as far as the table tells."""
+    known = [effect for effect in EFFECTS if effect in ratings]
+    rows = ratings.drop_duplicates("lod").set_index("lod")[known]
+    return {
+        str(lod): {str(effect): str(level) for effect, level in row.dropna().items()}
+        for lod, row in rows.iterrows()
+    }
+
+
+COLUMNS: Final = (
+    *("distance", "lod", "best", "change", "verdict"),
+    *("realism_loss", "realism_loss_low", "realism_loss_high", "realism_margin"),
+    *("noticed_excess", "noticed_excess_low", "noticed_excess_high", "noticed_margin"),
+    *("p_equivalent", "p_different"),
+)
+
+
+def effect_table(verdicts: Sequence[EffectVerdict], costs: Costs | None = None) -> pd.DataFrame:
+    """Return one row per LoD and distance, as effects-decision.csv has them."""
+    rows = []
+    for own in verdicts:
+        unknown = Test(np.nan, np.nan, np.nan, np.nan)
+        tests = (own.realism, own.noticed or unknown)
+        numbers = [n for test in tests for n in (test.value, test.low, test.high, test.margin)]
+        head = (own.distance, own.lod, own.best, own.name, own.outcome)
+        row = dict(zip(COLUMNS, (*head, *numbers, own.p_equivalent, own.p_different), strict=True))
+        rows.append({**row, **(saving_columns(saving_of(own, costs)) if costs else {})})
+    return pd.DataFrame(rows)
+
+
+def saving_of(verdict: EffectVerdict, costs: Costs | None) -> Saving | None:
+    """Return what the LoD saves: as it was timed itself, or as its one effect was."""
+    if costs is None:
+        return None
+    timed = lod_saving(costs, verdict.distance, verdict.lod, best=verdict.best)
+    if timed or len(verdict.changes) != 1:
+        return timed
+    change = verdict.changes[0]
+    return effect_saving(
+        costs, change.effect, kept=change.kept, left=change.left, distance=verdict.distance
+    )
