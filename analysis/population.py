@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +20,13 @@ from analysis.table import LEVELS, STANDARD_LODS
 Floats = NDArray[np.float64]
 
 # Population means of the ratings; columns are low, medium, high, ultra.
-_MEAN_RATINGS = MappingProxyType(
-    {
-        "macroscopic": (1.60, 2.95, 3.05, 3.45),
-        "near": (1.70, 2.60, 2.90, 3.00),
-        "medium": (2.05, 2.70, 2.85, 2.90),
-        "far": (2.50, 2.70, 2.75, 2.75),
-    }
-)
+_MEAN_RATINGS: Mapping[str, tuple[float, ...]] = {
+    "macroscopic": (1.60, 2.95, 3.05, 3.45),
+    "near": (1.70, 2.60, 2.90, 3.00),
+    "medium": (2.05, 2.70, 2.85, 2.90),
+    "far": (2.50, 2.70, 2.75, 2.75),
+}
+_IRIS_PX: Mapping[str, float] = {"macroscopic": 350.0, "near": 160.0, "medium": 40.0, "far": 12.0}
 
 # Greatest sensitivity (d') to the difference of a pair of LoDs: rows and columns low to ultra.
 # Low against high is not in the reference; 3.6 lies between its neighbours.
@@ -49,11 +47,7 @@ class Population:
     """
 
     mean_ratings: Mapping[str, tuple[float, ...]] = field(default_factory=lambda: _MEAN_RATINGS)
-    iris_px: Mapping[str, float] = field(
-        default_factory=lambda: MappingProxyType(
-            {"macroscopic": 350.0, "near": 160.0, "medium": 40.0, "far": 12.0}
-        )
-    )
+    iris_px: Mapping[str, float] = field(default_factory=lambda: _IRIS_PX)
     thresholds: tuple[float, ...] = (-1.35, -0.25, 0.85, 1.85)
     share_of_experts: float = 0.6  # the thesis had six colleagues among ten
     leniency_gap: float = 0.30  # experts are this much stricter than people who do not play
@@ -81,9 +75,7 @@ class Population:
         """Latent realism mu per distance, low to ultra, that gives ``mean_ratings``."""
         wanted = np.array(list(self.mean_ratings.values()))
         mu = self._solve(wanted)
-        return MappingProxyType(
-            {d: tuple(map(float, row)) for d, row in zip(self.mean_ratings, mu, strict=True)}
-        )
+        return {d: tuple(map(float, row)) for d, row in zip(self.mean_ratings, mu, strict=True)}
 
     def mean_rating(self, mu: Floats) -> Floats:
         """Return the population's mean rating of stimuli with latent realism ``mu``, any shape.

@@ -19,6 +19,7 @@ from study.commands.errors import USER_ERRORS, is_ours, one_line
 COMMANDS: Final = (
     "run",
     "check",
+    "power",
     "render",
     "worker",
     "still",

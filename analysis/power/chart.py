@@ -1,0 +1,117 @@
+"""The chart of power: one panel per distance, a line for each LoD over the number of people."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter, NullLocator, PercentFormatter
+
+from analysis.charts.style import INK, QUIET, SMALL, lod_colour, lod_marker, new_figure, tidy
+from analysis.power.needed import POWER
+from analysis.power.outcome import Outcome
+
+_COLUMNS: Final = 2
+_APART: Final = 0.075  # of the axis: two labels of a line's end stand no closer
+
+
+def power_chart(outcome: Outcome, *, title: str) -> Figure:
+    """Draw the share of right verdicts by number of people; bars are the simulation's error."""
+    distances = list(dict.fromkeys(outcome.verdicts["distance"]))
+    rows = math.ceil(len(distances) / _COLUMNS)
+    columns = min(_COLUMNS, len(distances))
+    figure = new_figure(4.6 * columns, 2.9 * rows + 0.7, title, is_simulated=True)
+    panels = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel()
+    lods = list(dict.fromkeys(outcome.verdicts["lod"]))
+    for axes, distance in zip(panels, distances, strict=False):
+        _panel(axes, outcome, distance, lods)
+    for axes in panels[len(distances) :]:
+        axes.set_visible(False)
+    for axes in panels[::columns]:
+        axes.set_ylabel("studies with the right verdict", fontsize=SMALL, color=INK)
+    return figure
+
+
+def _panel(axes: Axes, outcome: Outcome, distance: str, lods: list[str]) -> None:
+    own = outcome.verdicts[outcome.verdicts["distance"] == distance]
+    people = sorted(set(own["participants"].astype(int)))
+    axes.set_title(distance, fontsize=SMALL + 1, fontweight="bold", color=INK, loc="left")
+    axes.axhline(POWER, color=QUIET, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
+    ends: list[tuple[float, str, str]] = []
+    silent: list[str] = []
+    for lod, rows in own.groupby("lod", sort=False):
+        name = str(rows["right_verdict"].iloc[0])
+        shown = name or "equivalent"
+        if rows[shown].isna().any():
+            silent.append(str(lod))
+            continue
+        colour = lod_colour(str(lod), lods)
+        _line(axes, rows, shown, colour=colour, marker=lod_marker(str(lod), lods))
+        label = f"{lod}: {shown}" if name else f"{lod}: equivalent (on the margin)"
+        ends.append((float(rows[shown].iloc[-1]), label, colour))
+    cheapest = outcome.cheapest[outcome.cheapest["distance"] == distance]
+    if not cheapest["right"].isna().any():
+        _line(axes, cheapest, "right", colour=INK, marker="")
+        label = f"{cheapest['right_lod'].iloc[0]} named as cheapest"
+        ends.append((float(cheapest["right"].iloc[-1]), label, INK))
+    _label(axes, ends, at=people[-1])
+    _axis(axes, people)
+    if silent:
+        text = f"cannot be concluded: {', '.join(silent)}"
+        axes.text(0.02, 0.03, text, transform=axes.transAxes, fontsize=SMALL, color=QUIET)
+
+
+def _line(axes: Axes, rows: pd.DataFrame, name: str, *, colour: str, marker: str) -> None:
+    own = rows.sort_values("participants")
+    x, y = own["participants"].astype(float), own[name].astype(float)
+    error: Any = [y - own[f"{name}_low"], own[f"{name}_high"] - y]
+    axes.errorbar(
+        x,
+        y,
+        yerr=error,
+        color=colour,
+        marker=marker,
+        markersize=5,
+        markeredgecolor=INK,
+        markeredgewidth=0.5,
+        linewidth=2.2 if not marker else 1.4,
+        elinewidth=0.9,
+        capsize=2,
+        zorder=4 if not marker else 3,
+    )
+
+
+def _label(axes: Axes, ends: list[tuple[float, str, str]], *, at: float) -> None:
+    """Write each line's name at its end, moved apart where they meet."""
+    places: list[float] = []
+    for y, _, _ in (listed := sorted(ends)):
+        places.append(max(y, places[-1] + _APART) if places else y)
+    over = max(0.0, places[-1] - 1.02) if places else 0.0
+    for place, (_, text, colour) in zip(places, listed, strict=True):
+        axes.annotate(
+            text,
+            (at, place - over),
+            xytext=(7, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=SMALL,
+            color=INK if colour == INK else colour,
+            annotation_clip=False,
+        )
+
+
+def _axis(axes: Axes, people: list[int]) -> None:
+    tidy(axes)
+    axes.set_xscale("log")
+    axes.set_xticks(people, [str(count) for count in people])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    first, last = people[0], people[-1]
+    spread = (last / first) if last > first else 2.0
+    axes.set_xlim(first / spread**0.06, last * spread**0.62)
+    axes.set_ylim(-0.03, 1.05)
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0, decimals=0))
+    axes.set_xlabel("people", fontsize=SMALL, color=INK)
