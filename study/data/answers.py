@@ -10,13 +10,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from study.data import completion, events
+from study.data import completion
+from study.data.at_trial import adding, check_reached, finishing, open_trial, reaching
 from study.data.database import Database
-from study.data.participants import Participant, locked
+from study.data.errands import Errand
+from study.data.participants import Participant
 from study.data.refusals import NotWatchedError
+from study.data.schema import ParticipantRow
+from study.data.senders import locking_again
 from study.data.studies import by_id
-from study.data.trials import AMENDED, ANSWERED, Trial, state_of
-from study.data.views import check_reached, start
+from study.data.trials import AMENDED, ANSWERED, Trial, events_of, trial_of
 from study.design.definition import StudyDefinition
 from study.design.questions import Value, each_asked, read_answers
 
@@ -50,38 +53,64 @@ def store(
     NotWatchedError if ``is_final`` comes before the clip was watched as often as the study asks.
     """
     definition = by_id(db, participant.study_id).definition
-    with db.writing() as session:
-        row = locked(session, participant)
-        trial, is_reached = events.trial_and_reach(session, row.id, position)
-        was_complete = trial.completed_at is not None
-        if events.is_known(session, row, key):
-            return Stored(new=False, is_amendment=False, trial_complete=was_complete)
-        check_reached(trial, is_reached=is_reached)
-        # What was given before matters only now that all of it is put together.
-        state = state_of(session, trial) if is_final else None
-        answers = _read(definition, state, given)
-        start(trial, db)
-        is_final = is_final and not was_complete
-        payload: dict[str, Any] = {
-            "answers": answers,
-            "is_final": is_final,
-            "response_ms": response_ms,
-            "clock_ms": clock_ms,
-        }
-        kind = AMENDED if was_complete else ANSWERED
-        now = db.now()
-        event = events.append(
-            session, row, key=key, kind=kind, payload=payload, trial=trial, now=now
+
+    def errand() -> Errand[Stored]:
+        who = yield from locking_again(participant)
+        return (
+            yield from storing(
+                db,
+                definition,
+                who,
+                position,
+                given,
+                key=key,
+                is_final=is_final,
+                response_ms=response_ms,
+                clock_ms=clock_ms,
+            )
         )
-        if is_final:
-            trial.completed_at, trial.session_id = now, event.session_id
-            session.flush()
-            completion.complete(db, session, row)
-        return Stored(
-            new=True,
-            is_amendment=was_complete,
-            trial_complete=is_final or was_complete,
-        )
+
+    return db.run(errand)
+
+
+def storing(
+    db: Database,
+    definition: StudyDefinition,
+    who: Any,
+    position: int,
+    given: Mapping[str, object],
+    *,
+    key: str,
+    is_final: bool = False,
+    response_ms: int | None = None,
+    clock_ms: float | None = None,
+) -> Errand[Stored]:
+    """Do the same among other errands; ``who`` is the row that holds the participant."""
+    trial = yield from reaching(who, position, key=key)
+    was_complete = trial.completed_at is not None
+    if trial.is_known:
+        return Stored(new=False, is_amendment=False, trial_complete=was_complete)
+    check_reached(trial)
+    # What was given before matters only now that all of it is put together.
+    state = trial_of(trial, (yield from events_of(trial))) if is_final else None
+    answers = _read(definition, state, given)
+    is_final = is_final and not was_complete
+    payload: dict[str, Any] = {
+        "answers": answers,
+        "is_final": is_final,
+        "response_ms": response_ms,
+        "clock_ms": clock_ms,
+    }
+    kind = AMENDED if was_complete else ANSWERED
+    now = db.now()
+    sitting = yield from adding(who, trial, key=key, kind=kind, payload=payload, now=now)
+    if is_final:
+        yield from finishing(trial, sitting=sitting, now=now)
+        if (yield from open_trial(who)) is None:
+            yield lambda session: completion.complete(
+                db, session, session.get_one(ParticipantRow, who.id)
+            )
+    return Stored(new=True, is_amendment=was_complete, trial_complete=is_final or was_complete)
 
 
 def _read(

@@ -52,12 +52,20 @@ class GroupCommit:
     @contextmanager
     def writing(self) -> Iterator[Session]:
         """Give a session that may write; what it wrote is on the disk when the block has ended."""
+        with self.connection() as connection, _own_part(connection) as session:
+            yield session
+
+    @contextmanager
+    def connection(self) -> Iterator[Connection]:
+        """Give the group's connection; whoever fails takes back what they wrote by themselves.
+
+        What was written is on the disk when the block has ended.
+        """
         self._take_turn()
         try:
             group = self._join()
             try:
-                with _own_part(group) as session:
-                    yield session
+                yield group.connection
                 group.size += 1
             finally:
                 if self._nobody_follows(group):
@@ -109,10 +117,10 @@ class GroupCommit:
 
 
 @contextmanager
-def _own_part(group: _Group) -> Iterator[Session]:
+def _own_part(connection: Connection) -> Iterator[Session]:
     with (
         Session(
-            group.connection, expire_on_commit=False, join_transaction_mode="create_savepoint"
+            connection, expire_on_commit=False, join_transaction_mode="create_savepoint"
         ) as session,
         session.begin(),
     ):

@@ -10,20 +10,22 @@ from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from datetime import UTC, datetime
 from importlib import resources
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from alembic import command
 from alembic.config import Config
 from alembic.util import CommandError
-from sqlalchemy import Engine, make_url, text
+from sqlalchemy import Connection, Engine, make_url, text
 from sqlalchemy.engine import URL
 from sqlalchemy.exc import ArgumentError, DataError, DBAPIError
 from sqlalchemy.orm import Session
 
 from study.data.commits import GroupCommit
 from study.data.engines import DRIVER, make_engine, reading_engine
+from study.data.errands import Make, look, run
 from study.data.refusals import UnusablePayloadError
 
+T = TypeVar("T")
 Clock = Callable[[], datetime]
 MIGRATION_LOCK: Final = 71_202_611  # any number, the same for all who migrate one database
 
@@ -68,6 +70,32 @@ class Database:
         own = self.group.writing() if self.group else _alone(self.engine)
         with self._joined(own, is_writing=True) as session:
             yield session
+
+    @contextmanager
+    def batch(self) -> Iterator[Connection]:
+        """Give a connection for a transaction of many errands; see ``study.data.errands``.
+
+        It joins no other transaction. What was written is on the disk when the block has ended.
+        """
+        with self.group.connection() if self.group else self.engine.begin() as connection:
+            yield connection
+
+    def run(self, make: Make[T]) -> T:
+        """Run one errand that may write, in a transaction of its own or inside the outer one."""
+        with self.writing() as session:
+            session.flush()
+            found: T = run(session.connection(), [make])[0].get()
+            session.expire_all()
+            return found
+
+    def look(self, make: Make[T]) -> T:
+        """Run one errand that only reads one consistent state."""
+        outer = self._session.get()
+        if outer is not None:
+            outer[0].flush()
+            return look(outer[0].connection(), make)
+        with self._reading_engine.begin() as connection:
+            return look(connection, make)
 
     @contextmanager
     def _joined(

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import and_, event, or_, select
+from sqlalchemy import event, select
 from sqlalchemy.orm import Mapper, Session
 
 from study.data.database import Database
@@ -113,7 +113,7 @@ def append(
         trial_id=None if trial is None else trial.id,
         key=key,
         kind=kind,
-        payload=_plain(payload),
+        payload=plain(payload),
         created_at=now,
     )
     session.add(row)
@@ -126,14 +126,19 @@ def is_known(session: Session, participant: ParticipantRow, key: str) -> bool:
 
     Raises UnusablePayloadError for a key that cannot be stored.
     """
+    query = select(EventRow.id).where(
+        EventRow.participant_id == participant.id, EventRow.key == checked_key(key)
+    )
+    return session.scalar(query) is not None
+
+
+def checked_key(key: str) -> str:
+    """Return a key that can be stored; raises UnusablePayloadError for any other."""
     if not 0 < len(key) <= MAX_KEY_CHARS or "\x00" in key:
         raise UnusablePayloadError(
             f"an event's key has 1 to {MAX_KEY_CHARS} characters; found {len(key)}"
         )
-    query = select(EventRow.id).where(
-        EventRow.participant_id == participant.id, EventRow.key == key
-    )
-    return session.scalar(query) is not None
+    return key
 
 
 def trial_row(session: Session, participant_id: int, position: int) -> TrialRow:
@@ -148,29 +153,7 @@ def trial_row(session: Session, participant_id: int, position: int) -> TrialRow:
     return row
 
 
-def trial_and_reach(session: Session, participant_id: int, position: int) -> tuple[TrialRow, bool]:
-    """Return the trial at a position, and whether no trial before it is still open.
-
-    Raises NotReachedError when there is none.
-    """
-    # One query for both: the trial itself, and open ones before it.
-    rows = session.scalars(
-        select(TrialRow)
-        .where(
-            TrialRow.participant_id == participant_id,
-            or_(
-                TrialRow.position == position,
-                and_(TrialRow.position < position, TrialRow.completed_at.is_(None)),
-            ),
-        )
-        .order_by(TrialRow.position)
-    ).all()
-    if not rows or rows[-1].position != position:
-        raise NotReachedError(f"there is no trial {position} yet")
-    return rows[-1], len(rows) == 1
-
-
-def _plain(payload: Payload) -> dict[str, Any]:
+def plain(payload: Payload) -> dict[str, Any]:
     """Return the payload as plain JSON without what no database can store."""
     try:
         text = json.dumps(payload, allow_nan=False)
@@ -180,6 +163,8 @@ def _plain(payload: Payload) -> dict[str, Any]:
         raise UnusablePayloadError(
             f"an event's payload has at most {MAX_PAYLOAD_BYTES} bytes; found {len(text)}"
         )
+    if "\\u0000" not in text and "\\ud" not in text:
+        return dict(payload)
     # PostgreSQL stores neither U+0000 nor lone surrogates.
     cleaned: dict[str, Any] = _clean(json.loads(text))
     return cleaned

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Final
 
-from sqlalchemy import select
+from sqlalchemy import bindparam, or_, select
 from sqlalchemy.orm import Session
 
 from study.data import events
 from study.data.database import Database
+from study.data.errands import Errand
 from study.data.events import Recorded
 from study.data.participants import Participant, locked
+from study.data.prepared import Prepared, table_of
 from study.data.refusals import NotReachedError
 from study.data.schema import EventRow
 from study.data.studies import by_id
@@ -22,21 +24,45 @@ from study.design.questions import read_answers
 
 RESTED: Final = "rested"
 ATTENTION: Final = "attention"
+_E: Final = table_of(EventRow)
+_OVER: Final = Prepared(
+    select(_E.c.payload).where(
+        _E.c.participant_id == bindparam("who"),
+        or_(_E.c.kind == RESTED, _E.c.kind == ATTENTION),
+    )
+)
 
 
 def due_pause(
     session: Session, participant_id: int, definition: StudyDefinition, mine: Sequence[Trial]
 ) -> Pause | None:
     """Return the pause that a participant is at, given their trials, or None."""
-    done = sum(trial.is_complete and not trial.is_practice for trial in mine)
-    reached = [pause for pause in definition.pauses if pause.after <= done]
-    if not reached or all(trial.is_complete for trial in mine):
+    reached = reached_pauses(definition, mine)
+    if not reached:
         return None
     query = select(EventRow.payload).where(
         EventRow.participant_id == participant_id, EventRow.kind.in_((RESTED, ATTENTION))
     )
     over = {payload["pause"] for payload in session.scalars(query)}
     return next((pause for pause in reached if pause.key not in over), None)
+
+
+def pausing(who: Any, definition: StudyDefinition, mine: Sequence[Trial]) -> Errand[Pause | None]:
+    """Return the same, as an errand."""
+    reached = reached_pauses(definition, mine)
+    if not reached:
+        return None
+    rows = yield _OVER, {"who": who.id}
+    over = {row.payload["pause"] for row in rows}
+    return next((pause for pause in reached if pause.key not in over), None)
+
+
+def reached_pauses(definition: StudyDefinition, mine: Sequence[Trial]) -> list[Pause]:
+    """Return the pauses that a participant has come to; none once all trials are complete."""
+    if not definition.pauses or all(trial.is_complete for trial in mine):
+        return []
+    done = sum(trial.is_complete and not trial.is_practice for trial in mine)
+    return [pause for pause in definition.pauses if pause.after <= done]
 
 
 def finish(

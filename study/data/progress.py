@@ -6,13 +6,14 @@ event; after that the first trial that is not complete is the current one.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 from study.data import consents, events, pauses, trials
 from study.data.checks import CHECKS, done_checks, wanted
 from study.data.database import Database
+from study.data.errands import Errand
 from study.data.events import Recorded
 from study.data.participants import Participant, locked
 from study.data.refusals import NotReachedError
@@ -75,6 +76,25 @@ def current_step(db: Database, participant: Participant) -> Step:
             return Step(early)
         mine = trials.trials_of(session, row.id, open_only=True)
         pause = pauses.due_pause(session, row.id, definition, mine)
+    return step_among(mine, pause)
+
+
+def standing(
+    who: Any, definition: StudyDefinition
+) -> Errand[tuple[Step, tuple[Trial, ...]] | None]:
+    """Return where somebody is among the trials, and these; ``who`` is their row.
+
+    It is what ``current_step`` returns, as an errand; None for somebody before the trials.
+    """
+    if who.instructed_at is None or early_step(who, definition, ()) is not None:
+        return None
+    mine = yield from trials.reading(who)
+    pause = yield from pauses.pausing(who, definition, mine)
+    return step_among(mine, pause), mine
+
+
+def step_among(mine: Sequence[Trial], pause: Pause | None) -> Step:
+    """Return the step of somebody who has begun, at the ``pause`` if one is due."""
     open_trial = next((trial for trial in mine if not trial.is_complete), None)
     if open_trial is None:
         return Step("thanks")

@@ -7,11 +7,13 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import Row, select
+from sqlalchemy import Row, bindparam, select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
+from study.data.errands import Errand
 from study.data.participants import Participant
+from study.data.prepared import Prepared, table_of
 from study.data.schema import EventRow, ParticipantRow, TrialRow
 from study.data.studies import by_id
 from study.design.definition import StudyDefinition
@@ -66,15 +68,6 @@ def at(db: Database, participant: Participant, position: int) -> Trial | None:
     return found[0] if found else None
 
 
-def clip_id_at(db: Database, participant: Participant, position: int) -> str | None:
-    """Return which clip a participant sees at a position, or None."""
-    query = select(TrialRow.clip_id).where(
-        TrialRow.participant_id == participant.id, TrialRow.position == position
-    )
-    with db.reading() as session:
-        return session.scalar(query)
-
-
 def trials_of(
     session: Session, participant_id: int, *, open_only: bool = False
 ) -> tuple[Trial, ...]:
@@ -99,15 +92,33 @@ def trials_of(
     return tuple(trial_of(row, by_trial[row.id]) for row in rows)
 
 
+def reading(who: Any) -> Errand[tuple[Trial, ...]]:
+    """Return the same as an errand: all trials in order, with what has come of the open one."""
+    rows = yield _ALL, {"who": who.id}
+    now = next((row for row in rows if row.completed_at is None), None)
+    events = (yield _EVENTS, {"trial": now.id}) if now is not None else ()
+    return tuple(trial_of(row, events if row is now else ()) for row in rows)
+
+
 # Columns and not objects that can be changed: these are read with every page, and it is quicker.
 _TRIAL: Final = TrialRow.__table__.columns
 _EVENT: Final = (EventRow.trial_id, EventRow.kind, EventRow.payload, EventRow.created_at)
+_T: Final = table_of(TrialRow)
+_E: Final = table_of(EventRow)
+_ALL: Final = Prepared(
+    select(*_T.c).where(_T.c.participant_id == bindparam("who")).order_by(_T.c.position)
+)
+_EVENTS: Final = Prepared(
+    select(_E.c.kind, _E.c.payload, _E.c.created_at)
+    .where(_E.c.trial_id == bindparam("trial"))
+    .order_by(_E.c.id)
+)
 
 
-def state_of(session: Session, row: TrialRow) -> Trial:
-    """Read one trial with its plays counted and its answers folded."""
-    events = select(*_EVENT).where(EventRow.trial_id == row.id).order_by(EventRow.id)
-    return trial_of(row, session.execute(events))
+def events_of(trial: Any) -> Errand[list[Any]]:
+    """Return what is recorded about a trial, oldest first."""
+    found: list[Any] = yield _EVENTS, {"trial": trial.id}
+    return found
 
 
 def trial_of(row: TrialRow | Row[Any], events: Iterable[EventRow | Row[Any]]) -> Trial:

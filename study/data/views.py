@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from study.data import events
+from study.data.at_trial import adding, check_reached, reaching
 from study.data.database import Database
+from study.data.errands import Errand
 from study.data.events import Recorded
-from study.data.participants import Participant, locked
-from study.data.refusals import NotReachedError
-from study.data.schema import TrialRow
+from study.data.participants import Participant
+from study.data.senders import locking_again
 from study.data.trials import PLAYED
+
+Play = Mapping[str, Any]
 
 
 def record(
-    db: Database, participant: Participant, position: int, *, key: str, play: Mapping[str, Any]
+    db: Database, participant: Participant, position: int, *, key: str, play: Play
 ) -> Recorded:
     """Add one play of a trial's clip.
 
@@ -23,23 +25,23 @@ def record(
     play counts is ``study.design.certificate``'s to say, whenever somebody asks.
     Raises NotReachedError for a trial that lies ahead.
     """
-    with db.writing() as session:
-        row = locked(session, participant)
-        trial, is_reached = events.trial_and_reach(session, row.id, position)
-        check_reached(trial, is_reached=is_reached)
-        start(trial, db)
-        return Recorded(
-            events.add(session, row, key=key, kind=PLAYED, payload=play, trial=trial, now=db.now())
-        )
+
+    def errand() -> Errand[Recorded]:
+        who = yield from locking_again(participant)
+        found = yield from recording(db, who, position, key=key, play=lambda _clip_id: play)
+        return found[0]
+
+    return db.run(errand)
 
 
-def start(trial: TrialRow, db: Database) -> None:
-    """Stamp the beginning of a trial at the first sign of it."""
-    if trial.started_at is None:
-        trial.started_at = db.now()
-
-
-def check_reached(trial: TrialRow, *, is_reached: bool) -> None:
-    """Raise NotReachedError for a trial behind one that is still open."""
-    if not is_reached:
-        raise NotReachedError(f"trial {trial.position} comes after the ones before it")
+def recording(
+    db: Database, who: Any, position: int, *, key: str, play: Callable[[str], Play]
+) -> Errand[tuple[Recorded, Play]]:
+    """Add one play as ``play`` tells it, which is told the trial's ``clip_id``; returns it too."""
+    trial = yield from reaching(who, position, key=key)
+    told = play(trial.clip_id)
+    check_reached(trial)
+    if trial.is_known:
+        return Recorded(False), told
+    yield from adding(who, trial, key=key, kind=PLAYED, payload=told, now=db.now())
+    return Recorded(True), told

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Annotated, Final
+from urllib.parse import quote
 
 from fastapi import Depends, Request
 from fastapi.responses import RedirectResponse, Response
@@ -98,7 +99,7 @@ def as_visitor(request: Request, here: Here, participant: Participant, token: st
         csrf=csrf_token(here.secret, token),
         outbox=sign_outbox(here.secret, participant.public_id),
         study=studies.by_id(here.db, participant.study_id).spoken(participant.language),
-        resume_url=str(request.url_for("resume", token=token)) if token else "",
+        resume_url=f"{request.base_url}resume/{quote(token)}" if token else "",
         is_idle=here.db.now() - participant.last_seen_at > participants.IDLE,
     )
 

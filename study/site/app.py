@@ -93,6 +93,7 @@ def create_app(settings: Settings, *, study_id: int | None = None) -> FastAPI:
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         to_thread.current_default_thread_limiter().total_tokens = THREADS
         yield
+        place.writer.close()
         place.db.close()
 
     app = FastAPI(title="Ocularist", openapi_url=None, lifespan=lifespan)

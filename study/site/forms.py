@@ -11,6 +11,7 @@ from study.design.questions import MultipleQuestion, Question, each_asked
 
 # A whole questionnaire of the longest texts stays far below; more is no form of ours.
 MAX_FORM_BYTES: Final = 256 * 1024
+Fields = Mapping[str, Sequence[str]]
 
 
 def question_rows(questions: Sequence[Question]) -> list[list[Question]]:

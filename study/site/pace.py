@@ -40,19 +40,28 @@ class Pace:
 
     def check(self, name: str) -> None:
         """Count once for a name; raises TooManyError if that is too fast."""
+        if self.count(name):
+            self.settle(name)
+
+    def count(self, name: str) -> bool:
+        """Count once, without a word to the database; True where a lot is full, to be settled.
+
+        Raises TooManyError while this name is refused.
+        """
         now = self.clock()
         with self._lock:
             left_s = self._until.get(name, now) - now
             if left_s > 0:
                 raise TooManyError(math.ceil(left_s))
-            is_lot = self._fills_a_lot(name, now)
-        if not is_lot:
-            return
+            return self._fills_a_lot(name, now)
+
+    def settle(self, name: str) -> None:
+        """Tell of a full lot; raises TooManyError if that was too fast."""
         try:
             self.tell(name, self.lot)
         except TooManyError as error:
             with self._lock:
-                self._until[name] = now + error.wait_s
+                self._until[name] = self.clock() + error.wait_s
             raise
 
     def _fills_a_lot(self, name: str, now: float) -> bool:

@@ -18,23 +18,26 @@ from study.design.duration import visit_parts
 OWN_PACE_TRIALS: Final = 3
 
 
-def minutes_left(definition: StudyDefinition, every: Sequence[Trial]) -> int:
+def minutes_left(
+    definition: StudyDefinition, every: Sequence[Trial], *, estimate_s: float | None = None
+) -> int:
     """Return how many minutes a participant's open trials take, at least one.
 
     Until enough trials are done it is the study's estimate; then the median of their own, which
-    a long pause in one of them does not change.
+    a long pause in one of them does not change. ``estimate_s`` is ``trial_s``, if it is known.
     """
     taken = [
         (trial.completed_at - trial.started_at).total_seconds()
         for trial in every
         if trial.completed_at is not None and trial.started_at is not None
     ]
-    one_s = median(taken) if len(taken) >= OWN_PACE_TRIALS else _estimate_s(definition)
+    one_s = median(taken) if len(taken) >= OWN_PACE_TRIALS else estimate_s or trial_s(definition)
     left = sum(not trial.is_complete for trial in every)
     return max(1, math.ceil(left * one_s / 60))
 
 
-def _estimate_s(definition: StudyDefinition) -> float:
+def trial_s(definition: StudyDefinition) -> float:
+    """Return how many seconds one trial takes, as the study file lets us expect."""
     parts = visit_parts(definition)
     trials = len(definition.practice) + definition.trial_count
     return (parts.get("watching", 0.0) + parts.get("answering", 0.0)) / trials

@@ -4,19 +4,26 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
 
 from fastapi import APIRouter, Request
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import answers, events, jobs, participants, trials
+from renderer.manifest import ClipRecord
+from study.data import answers, events, jobs, participants, progress
+from study.data.errands import Errand
 from study.data.progress import Step
-from study.data.refusals import NotReachedError, NotWatchedError
+from study.data.refusals import NotWatchedError
+from study.data.trials import Trial
 from study.design.questions import AnswerError
-from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
-from study.site.forms import answers_in, first, question_rows
+from study.site.access import Visitor, as_visitor, check_csrf, redirect, step_url, to_current
+from study.site.asker import Asker, by_cookie, found, locked, study_of
+from study.site.forms import Fields, answers_in, first, read_form
 from study.site.frame import shared
 from study.site.media import clip_url
-from study.site.place import Here
+from study.site.place import Here, Place
 from study.site.problems import problem_page
 from study.site.time_left import minutes_left
 
@@ -26,36 +33,52 @@ LONGEST_MS = 24 * 3600 * 1000
 
 
 @router.get("/trial/{position}")
-def trial(request: Request, here: Here, visitor: AVisitor, position: int) -> Response:
+async def trial(request: Request, here: Here, position: int) -> Response:
     """Show the participant's current trial; any other leads there."""
-    step = step_of(here, visitor, "practice", "trial")
+    asker = by_cookie(request, here)
+    who, stood = await here.writer.look(partial(_look, request, here, asker))
+    visitor = as_visitor(request, here, participants.record_of(who), asker.token)
+    if stood is None:
+        return await run_in_threadpool(to_current, here, visitor)
+    step, every = stood
     if step.trial is None or step.trial.position != position:
-        return to_current(here, visitor)
-    participants.seen(here.db, visitor.participant)
-    return _trial_page(request, here, visitor, step)
+        return redirect(step_url(step))
+    if here.db.now() - who.last_seen_at >= participants.SEEN_AGAIN:
+        await run_in_threadpool(participants.seen, here.db, visitor.participant)
+    record = here.clips.record(step.trial.clip_id)
+    if record is None:
+        return await run_in_threadpool(_missing, request, here, visitor, step.trial)
+    return _trial_page(here, visitor, step, every, record)
+
+
+def _look(
+    request: Request, here: Place, asker: Asker
+) -> Errand[tuple[Any, tuple[Step, tuple[Trial, ...]] | None]]:
+    who = yield from found(request, here, asker)
+    stood = yield from progress.standing(who, study_of(here, who).definition)
+    return who, stood
 
 
 def _trial_page(
-    request: Request,
-    here: Here,
+    here: Place,
     visitor: Visitor,
     step: Step,
+    every: tuple[Trial, ...],
+    record: ClipRecord,
     *,
     given: Mapping[str, object] | None = None,
     error: AnswerError | None = None,
     note: str = "",
 ) -> Response:
-    if step.trial is None:
-        return to_current(here, visitor)
     found = step.trial
-    record = here.clips.record(found.clip_id)
-    if record is None:
-        return _missing(request, here, visitor, found)
+    if found is None:
+        return redirect(step_url(step))
     definition = visitor.study.definition
-    every = trials.all_trials(here.db, visitor.participant, open_only=True)
     is_last = found.position == every[-1].position
     frame = shared(visitor.study, visitor, "trial")
     text = frame["text"]
+    answers_so_far = {**found.answers, **(given or {})}
+    parts = here.parts.of(definition, text)
     return here.page(
         "participant/trial.html",
         status=422 if error or note else 200,
@@ -73,9 +96,10 @@ def _trial_page(
         retries=definition.certificate.retries,
         code=f"{visitor.name.upper()}-{found.position}",
         seconds=max(1, round(record.frame_count / record.fps)),
-        minutes_left=minutes_left(definition, every),
-        rows=question_rows(definition.questions),
-        answers={**found.answers, **(given or {})},
+        minutes_left=minutes_left(definition, every, estimate_s=parts.estimate_s),
+        rows=parts.rows,
+        blank=None if answers_so_far or error else parts.blank,
+        answers=answers_so_far,
         faults=error.said(text) if error else {},
         note=text(note) if note else "",
         key=secrets.token_hex(16),
@@ -83,7 +107,7 @@ def _trial_page(
     )
 
 
-def _views_allowed(most: int | None, found: trials.Trial) -> int | None:
+def _views_allowed(most: int | None, found: Trial) -> int | None:
     """Return how many more plays the study allows, None for any number."""
     return None if most is None else max(0, most - found.views)
 
@@ -95,7 +119,7 @@ def _heading(step: Step, text: Say) -> str:
     return text(key, number=step.number, total=step.total)
 
 
-def _steps(every: tuple[trials.Trial, ...], current: trials.Trial) -> list[str]:
+def _steps(every: tuple[Trial, ...], current: Trial) -> list[str]:
     """Return the marks of the progress bar: one per trial of the current kind."""
     alike = [one for one in every if one.is_practice == current.is_practice]
     return [
@@ -104,13 +128,13 @@ def _steps(every: tuple[trials.Trial, ...], current: trials.Trial) -> list[str]:
     ]
 
 
-def _to_come(here: Here, every: tuple[trials.Trial, ...], current: trials.Trial) -> list[str]:
+def _to_come(here: Here, every: tuple[Trial, ...], current: Trial) -> list[str]:
     """Return address and length of the clips that come later, for the preloader."""
     records = (here.clips.record(one.clip_id) for one in every if one.position > current.position)
     return [f"{clip_url(record)} {record.file_bytes}" for record in records if record is not None]
 
 
-def _missing(request: Request, here: Here, visitor: Visitor, found: trials.Trial) -> Response:
+def _missing(request: Request, here: Here, visitor: Visitor, found: Trial) -> Response:
     """Stop visibly where a clip is not there: the dashboard shows it, a worker makes it again."""
     jobs.requeue(here.db, [found.clip_id])
     events.record(
@@ -126,33 +150,66 @@ def _missing(request: Request, here: Here, visitor: Visitor, found: trials.Trial
 
 
 @router.post("/trial/{position}")
-def finish(
-    request: Request, here: Here, visitor: AVisitor, fields: VisitorsForm, position: int
-) -> Response:
+async def finish(request: Request, here: Here, position: int) -> Response:
     """Store the whole questionnaire and go on; a trial that is over changes no more."""
-    step = step_of(here, visitor)
-    if step.trial is None or step.trial.position != position:
-        return to_current(here, visitor)
-    given = answers_in(fields, visitor.study.definition.questions)
+    asker = by_cookie(request, here)
+    fields = await read_form(request)
+    check_csrf(here.secret, asker.token, first(fields, "csrf"))
     try:
-        answers.store(
-            here.db,
-            visitor.participant,
-            position,
-            given,
-            key=first(fields, "key") or f"finish-{position}",
-            is_final=True,
-            response_ms=_milliseconds(first(fields, "response_ms")),
-            clock_ms=_step_ms(first(fields, "clock_ms")),
-        )
-    except AnswerError as error:
-        return _trial_page(request, here, visitor, step, given=given, error=error)
-    except NotWatchedError:
-        note = "trial.locked_kept"
-        return _trial_page(request, here, visitor, step, given=given, note=note)
-    except NotReachedError:
+        step = await here.writer.write(partial(_finish, request, here, asker, fields, position))
+    except (AnswerError, NotWatchedError) as refused:
+        return await run_in_threadpool(_again, request, here, asker, fields, refused)
+    if step is not None:
+        return redirect(step_url(step))
+    return await run_in_threadpool(_lead, request, here, asker)
+
+
+def _finish(
+    request: Request, here: Place, asker: Asker, fields: Fields, position: int
+) -> Errand[Step | None]:
+    """Store the questionnaire if this is the trial that is open; returns where they are now."""
+    who = yield from locked(request, asker)
+    definition = study_of(here, who).definition
+    stood = yield from progress.standing(who, definition)
+    if stood is None or stood[0].trial is None or stood[0].trial.position != position:
+        return None if stood is None else stood[0]
+    yield from answers.storing(
+        here.db,
+        definition,
+        who,
+        position,
+        answers_in(fields, definition.questions),
+        key=first(fields, "key") or f"finish-{position}",
+        is_final=True,
+        response_ms=_milliseconds(first(fields, "response_ms")),
+        clock_ms=_step_ms(first(fields, "clock_ms")),
+    )
+    now = yield from progress.standing(who, definition)
+    return None if now is None else now[0]
+
+
+def _again(
+    request: Request, here: Place, asker: Asker, fields: Fields, refused: Exception
+) -> Response:
+    """Show the page once more, with what was given and why it was not stored."""
+    who, stood = here.db.look(partial(_look, request, here, asker))
+    visitor = as_visitor(request, here, participants.record_of(who), asker.token)
+    if stood is None or stood[0].trial is None:
         return to_current(here, visitor)
-    return to_current(here, visitor)
+    (step, every), current = stood, stood[0].trial
+    record = here.clips.record(current.clip_id)
+    if record is None:
+        return _missing(request, here, visitor, current)
+    given = answers_in(fields, visitor.study.definition.questions)
+    if isinstance(refused, AnswerError):
+        return _trial_page(here, visitor, step, every, record, given=given, error=refused)
+    return _trial_page(here, visitor, step, every, record, given=given, note="trial.locked_kept")
+
+
+def _lead(request: Request, here: Place, asker: Asker) -> Response:
+    """Lead to where they are somebody who is not among the trials."""
+    who, _ = here.db.look(partial(_look, request, here, asker))
+    return to_current(here, as_visitor(request, here, participants.record_of(who), asker.token))
 
 
 def _milliseconds(text: str) -> int | None:

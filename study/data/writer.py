@@ -1,0 +1,147 @@
+"""The writer: errands of many requests at once, in one transaction and with one wait for the disk.
+
+Whoever comes while a transaction waits for the disk is in the next one. On SQLite the statements
+run on the event loop's own thread: each takes some microseconds, less than another thread would
+wait for the interpreter, and only what may wait (the turn to write, the disk) runs in a thread
+beside it. On PostgreSQL every statement waits for the server, so the whole batch runs beside it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from typing import Any, Final, TypeVar
+from weakref import WeakKeyDictionary
+
+from sqlalchemy import Connection
+
+from study.data.database import Database
+from study.data.errands import Make, Outcome, run
+
+T = TypeVar("T")
+MOST: Final = 100
+"""Errands in one transaction: on SQLite everybody else waits for so many at the longest."""
+
+
+@dataclass
+class _Line:
+    """Errands that wait in one event loop, each with the future of whoever sent it."""
+
+    waiting: list[tuple[Make[Any], asyncio.Future[Any]]] = field(default_factory=list)
+    task: asyncio.Task[None] | None = None
+    beside: ThreadPoolExecutor = field(
+        default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="writer")
+    )
+
+    def take(self) -> list[tuple[Make[Any], asyncio.Future[Any]]]:
+        """Take those who are next."""
+        taken, self.waiting = self.waiting[:MOST], self.waiting[MOST:]
+        return taken
+
+
+class Writer:
+    """Runs errands that write; ``write`` returns once what its errand wrote is on the disk."""
+
+    def __init__(self, db: Database) -> None:
+        self._db = db
+        self._lines: WeakKeyDictionary[asyncio.AbstractEventLoop, _Line] = WeakKeyDictionary()
+
+    async def write(self, make: Make[T]) -> T:
+        """Run an errand among those of others; raises its own error, or why nothing was stored."""
+        loop = asyncio.get_running_loop()
+        line = self._lines.get(loop)
+        if line is None:
+            line = self._lines.setdefault(loop, _Line())
+        future: asyncio.Future[T] = loop.create_future()
+        line.waiting.append((make, future))
+        if line.task is None:
+            line.task = loop.create_task(self._work(line))
+        return await future
+
+    async def look(self, make: Make[T]) -> T:
+        """Run an errand that only reads: here on SQLite, in a thread where a server is asked."""
+        if self._db.group:
+            return self._db.look(make)
+        return await asyncio.to_thread(self._db.look, make)
+
+    def close(self) -> None:
+        """Let the last batches end."""
+        for line in list(self._lines.values()):
+            line.beside.shutdown()
+
+    async def _work(self, line: _Line) -> None:
+        """Run batch after batch until nobody waits."""
+        batch = self._batch_here if self._db.group else self._batch_beside
+        try:
+            while line.waiting:
+                await batch(line)
+        finally:
+            line.task = None
+
+    async def _batch_here(self, line: _Line) -> None:
+        taken: list[tuple[Make[Any], asyncio.Future[Any]]] = []
+        try:
+            async with self._transaction(line) as connection:
+                taken = line.take()
+                outcomes = run(connection, [make for make, _ in taken])
+        except BaseException as error:
+            _refuse(taken or line.take(), error)
+        else:
+            _tell(taken, outcomes)
+
+    async def _batch_beside(self, line: _Line) -> None:
+        taken = line.take()
+        makes = [make for make, _ in taken]
+        loop = asyncio.get_running_loop()
+        try:
+            outcomes = await loop.run_in_executor(line.beside, self._whole, makes)
+        except BaseException as error:
+            _refuse(taken, error)
+        else:
+            _tell(taken, outcomes)
+
+    def _whole(self, makes: Sequence[Make[Any]]) -> list[Outcome]:
+        with self._db.batch() as connection:
+            return run(connection, makes)
+
+    @asynccontextmanager
+    async def _transaction(self, line: _Line) -> AsyncIterator[Connection]:
+        """Begin and end a transaction in the thread beside, where waiting holds up nobody."""
+        loop = asyncio.get_running_loop()
+        own = self._db.batch()
+        connection = await loop.run_in_executor(line.beside, own.__enter__)
+        try:
+            yield connection
+        except BaseException as error:
+            how = (type(error), error, error.__traceback__)
+            await loop.run_in_executor(line.beside, own.__exit__, *how)
+            raise
+        await loop.run_in_executor(line.beside, own.__exit__, None, None, None)
+
+
+def _tell(
+    taken: Sequence[tuple[Make[Any], asyncio.Future[Any]]], outcomes: Sequence[Outcome]
+) -> None:
+    for (_, future), outcome in zip(taken, outcomes, strict=True):
+        if future.done():  # whoever asked has gone
+            continue
+        if outcome.error is None:
+            future.set_result(outcome.value)
+        else:
+            future.set_exception(outcome.error)
+
+
+def _refuse(taken: Sequence[tuple[Make[Any], asyncio.Future[Any]]], error: BaseException) -> None:
+    """Tell everybody that nothing was stored; what is no mere error ends the writer's work too."""
+    for _, future in taken:
+        if future.done():
+            continue
+        if isinstance(error, Exception):
+            future.set_exception(error)
+        else:
+            future.cancel()
+    if not isinstance(error, Exception):
+        raise error
