@@ -98,13 +98,10 @@ def children(pid: int) -> list[int]:
 
 
 def test_three_workers_share_a_database_and_one_is_killed(
-    small_study: Path, tmp_path: Path
+    small_study: Path, tmp_path: Path, database_url: str
 ) -> None:
-    prepared = prepare(
-        Settings(data_folder=tmp_path, database_url=f"sqlite:///{tmp_path}/study.sqlite3"),
-        str(small_study),
-    )
-    arguments = ["worker", "--data", str(tmp_path), "--until-empty"]
+    prepared = prepare(Settings(data_folder=tmp_path, database_url=database_url), str(small_study))
+    arguments = ["worker", "--data", str(tmp_path), "--database", database_url, "--until-empty"]
     workers = [start(*arguments) for _ in range(3)]
     watchdog = Timer(LIMIT_S, lambda: [worker.kill() for worker in workers])
     watchdog.start()
