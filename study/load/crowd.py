@@ -12,6 +12,7 @@ import numpy as np
 
 from study.design.definition import StudyDefinition
 from study.load.person import Person
+from study.load.processor import processor_s
 from study.load.visit import Acknowledged
 from study.load.wire import Wire
 
@@ -20,12 +21,17 @@ ANSWERS = ("answer", "questionnaire")
 
 @dataclass
 class Timings:
-    """How long requests took, by kind, and what went wrong, between two moments."""
+    """How long requests took, by kind, and what went wrong, between two moments.
+
+    ``site_s`` and ``crowd_s`` are the processor seconds of both in that time.
+    """
 
     seconds: dict[str, list[float]] = field(default_factory=dict)
     errors: dict[str, int] = field(default_factory=dict)
     began: float = math.inf
     ended: float = math.inf
+    site_s: float = math.nan
+    crowd_s: float = math.nan
 
     def note(self, kind: str, seconds: float, status: int) -> None:
         """Count one request that ended now, if it ended while we measure."""
@@ -46,6 +52,11 @@ class Timings:
         """Return the requests of these kinds per second; of all kinds when none is named."""
         return self.pooled(*kinds).size / self.elapsed_s
 
+    def processor_ms(self, seconds: float, *kinds: str) -> float:
+        """Return processor milliseconds per request of these kinds; nan where there was none."""
+        count = self.pooled(*kinds).size
+        return seconds * 1000 / count if count else float("nan")
+
     def pooled(self, *kinds: str) -> np.ndarray:
         """Return the seconds of all requests of these kinds; of all kinds when none is named."""
         names = kinds or tuple(self.seconds)
@@ -62,7 +73,8 @@ class Timings:
 class Crowd:
     """``people`` at once for ``seconds``, once all of them have come to the clips.
 
-    ``pause_s`` is the mean time that a person takes between two requests, 0 for none.
+    ``pause_s`` is the mean time that a person takes between two requests, 0 for none. ``servers``
+    are the numbers of the programs whose processor time is the site's.
     """
 
     url: str
@@ -74,6 +86,7 @@ class Crowd:
     uses_outbox: bool = True
     seed: int = 1
     headers: Mapping[str, str] = field(default_factory=dict)
+    servers: tuple[int, ...] = ()
     timings: Timings = field(default_factory=Timings)
     stored: list[Acknowledged] = field(default_factory=list)
     _there: set[int] = field(default_factory=set)
@@ -100,7 +113,10 @@ class Crowd:
             await asyncio.sleep(0.05)
         self.timings.began = time.perf_counter()
         self.timings.ended = self.timings.began + self.seconds
+        site_s, crowd_s = processor_s(*self.servers), time.process_time()
         await asyncio.sleep(self.seconds)
+        self.timings.site_s = processor_s(*self.servers) - site_s
+        self.timings.crowd_s = time.process_time() - crowd_s
 
     async def _place(self, number: int, report: Callable[[int], None]) -> None:
         """Fill one place: somebody comes as soon as the one before is done."""

@@ -12,12 +12,17 @@ from study.load.crowd import ANSWERS, Timings
 HEAD: Final = (
     *("database", "processes", "fsync", "people", "pause s"),
     *("answers/s", "requests/s", "p50 ms", "p95 ms", "p99 ms", "errors", "lost"),
+    *("site ms", "crowd ms"),
 )
 
 
 @dataclass(frozen=True)
 class Figures:
-    """One run: where, with how many, and what came out. Times are of all requests."""
+    """One run: where, with how many, and what came out. Times are of all requests.
+
+    ``site_ms`` and ``crowd_ms`` are processor time per request: the site's with its database's
+    server, and that of the simulated people, who share the machine.
+    """
 
     database: str
     processes: int
@@ -33,6 +38,8 @@ class Figures:
     p99_ms: float
     errors: int
     lost: int
+    site_ms: float
+    crowd_ms: float
 
     def row(self) -> list[str]:
         """Return the cells of a table's row."""
@@ -47,6 +54,7 @@ class Figures:
             *(f"{value:.0f}" for value in (self.p50_ms, self.p95_ms, self.p99_ms)),
             str(self.errors),
             str(self.lost),
+            *(f"{value:.2f}" for value in (self.site_ms, self.crowd_ms)),
         ]
 
     def plain(self) -> dict[str, Any]:
@@ -66,6 +74,8 @@ def figures_of(timings: Timings, *, lost: int, **facts: Any) -> Figures:
         p99_ms=timings.quantile_ms(0.99),
         errors=sum(timings.errors.values()),
         lost=lost,
+        site_ms=timings.processor_ms(timings.site_s),
+        crowd_ms=timings.processor_ms(timings.crowd_s),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -38,7 +39,7 @@ class Run:
 
 async def measure(run: Run, *, report: Callable[[int], None] = lambda _done: None) -> Figures:
     """Start a site, let a crowd at it, compare what it acknowledged with what it stored."""
-    with _database(run) as (folder, url):
+    with _database(run) as (folder, url, server):
         site = LoadedSite(folder, url, study_name=run.study, processes=run.processes)
         study = site.prepare()
         site.start()
@@ -52,6 +53,7 @@ async def measure(run: Run, *, report: Callable[[int], None] = lambda _done: Non
                 pause_s=run.pause_s,
                 uses_outbox=run.uses_outbox,
                 headers={SIMULATION_HEADER: simulation_token(site.settings.secret_key())},
+                servers=tuple(one.pid for one in (site.process, server) if one is not None),
             )
             timings = await crowd.run(report)
         finally:
@@ -81,8 +83,8 @@ def _lost(site: LoadedSite, study: Study, crowd: Crowd) -> int:
 
 
 @contextlib.contextmanager
-def _database(run: Run) -> Iterator[tuple[Path, str]]:
-    """Give a folder for the site and the address of an empty database.
+def _database(run: Run) -> Iterator[tuple[Path, str, subprocess.Popen[bytes] | None]]:
+    """Give a folder for the site, the address of an empty database, and its server if it has one.
 
     Without fsync SQLite's file lies in memory, where a write to the disk costs nothing; the site
     itself has no switch for it.
@@ -92,9 +94,9 @@ def _database(run: Run) -> Iterator[tuple[Path, str]]:
         name = stack.enter_context(tempfile.TemporaryDirectory(prefix="ocularist-", dir=parent))
         folder = Path(name)
         if run.database == SQLITE:
-            yield folder, f"sqlite:///{folder}/study.sqlite3"
+            yield folder, f"sqlite:///{folder}/study.sqlite3", None
             return
         more = ("max_connections=200", "shared_buffers=128MB", "synchronous_commit=on")
         server = stack.enter_context(TemporaryServer(is_durable=run.fsync, more=more))
         server.execute("CREATE DATABASE load")
-        yield folder, server.url("load")
+        yield folder, server.url("load"), server.process
