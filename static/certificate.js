@@ -2,7 +2,8 @@
 //
 // It judges nothing: the site does, by the study's rule (study/design/certificate.py). Frames are
 // counted by requestVideoFrameCallback, whose presentedFrames goes on where callbacks were missed;
-// where it is absent by the differences of the playback quality, which is cumulative.
+// in Firefox, where it goes on with every frame that was decoded, by the callbacks themselves; where
+// there are none by the differences of the playback quality, which is cumulative.
 
 import { clockStep_ms } from "./clock.js";
 import { Intervals } from "./intervals.js";
@@ -18,6 +19,16 @@ function visibleShare(box) {
 
 const round = (value, digits = 1) => Math.round(value * 10 ** digits) / 10 ** digits;
 
+// Firefox (from 132) numbers frames in presentedFrames whether they reached the screen or not: drawing
+// ten times a second it told of every frame of a clip of thirty. Only Gecko names its build so.
+const numbersAllFrames = /\bGecko\/\d/.test(navigator.userAgent);
+
+/** What counts the frames of a video here: "frames", "callbacks", "quality", or nothing. */
+function counter(video) {
+  if (video.requestVideoFrameCallback) return numbersAllFrames ? "callbacks" : "frames";
+  return video.getVideoPlaybackQuality ? "quality" : "";
+}
+
 export class PlayRecord {
   /**
    * @param {HTMLVideoElement} video  at its first frame, not yet playing
@@ -31,7 +42,7 @@ export class PlayRecord {
     this.started_at = new Date().toISOString();
     this.begun_ms = performance.now();
     this.quality = video.getVideoPlaybackQuality?.();
-    this.counted_by = video.requestVideoFrameCallback ? "frames" : this.quality ? "quality" : "";
+    this.counted_by = counter(video);
     this.first = null;
     this.last = null;
     this.callbacks = 0;
@@ -45,7 +56,7 @@ export class PlayRecord {
     this.rates = [video.playbackRate];
     this.shown = this.seen = this.shownSize();
     this.listen();
-    if (this.counted_by === "frames") this.countFrames();
+    if (video.requestVideoFrameCallback) this.countFrames();
     else video.addEventListener("timeupdate", () => this.begin(performance.now()), this.once());
   }
 
@@ -88,7 +99,7 @@ export class PlayRecord {
       if (this.stop.signal.aborted) return;
       this.countFrames();
       if (frame.mediaTime < this.video.duration / this.options.frames / 2) return;
-      this.callbacks += 1;
+      if (frame.mediaTime !== this.last?.mediaTime) this.callbacks += 1;
       this.checkSize();
       if (this.last) {
         const gap_ms = frame.presentationTime - this.last.presentationTime;
@@ -135,7 +146,7 @@ export class PlayRecord {
     const { box, width_px, height_px } = this.shown;
     const ratio = devicePixelRatio;
     return {
-      record_version: 2,
+      record_version: 3,
       is_complete: endedBy === "end",
       ended_by: endedBy,
       was_hidden: endedBy === "hidden" || this.hidden.total_ms > 0,
@@ -145,7 +156,7 @@ export class PlayRecord {
       presented_frames: this.presented(total, dropped),
       dropped_frames: dropped,
       callbacks: this.callbacks,
-      max_gap_ms: this.counted_by === "frames" && last ? round(this.max_gap_ms) : null,
+      max_gap_ms: last ? round(this.max_gap_ms) : null,
       wall_ms: last ? round(last.presentationTime - first.presentationTime) : null,
       media_ms: last ? round((last.mediaTime - first.mediaTime) * 1000) : null,
       ...this.counts,
@@ -169,6 +180,7 @@ export class PlayRecord {
 
   presented(total, dropped) {
     if (this.counted_by === "quality") return Math.min(total - dropped, this.options.frames);
+    if (this.counted_by === "callbacks") return this.last && this.callbacks;
     return this.last ? this.last.presentedFrames - this.first.presentedFrames + 1 : null;
   }
 }

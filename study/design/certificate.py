@@ -3,7 +3,9 @@
 A record (``static/certificate.js`` writes it) says what was presented, for how long, at which size,
 and what came between. The rule is part of the study file, so it stands before anybody takes part.
 Pure: a record and a rule go in, a verdict comes out; what a record does not tell is not held
-against it, except the frames themselves: uncounted frames certify nothing.
+against it, except the frames themselves: uncounted frames certify nothing. ``counted_by`` says what
+``presented_frames`` is: with "frames" what was presented; with "callbacks" what is known of it, and
+more may have been; with "quality" what was decoded and not dropped, and less may have been.
 """
 
 from __future__ import annotations
@@ -41,7 +43,7 @@ class Certificate(Part):
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a play counts: None where nobody counted its frames. ``reasons`` say why not."""
+    """Whether a play counts: None if all is well but its frames. ``reasons`` say why not."""
 
     certified: bool | None
     reasons: tuple[str, ...] = ()
@@ -49,7 +51,7 @@ class Verdict:
 
 REASONS: Final[Mapping[str, str]] = {
     "incomplete": "the clip was not played to its end",
-    "not-counted": "the browser does not count frames",
+    "not-counted": "the browser does not tell of every frame whether it was presented",
     "frames-missing": "not every frame is known to have been presented",
     "frames-dropped": "the browser dropped frames",
     "gap": "for too long no frame was presented",
@@ -69,9 +71,7 @@ REASONS: Final[Mapping[str, str]] = {
 def judge(play: Play, rule: Certificate) -> Verdict:
     """Apply a study's rule to the raw record of one play."""
     reasons = tuple(reason for reason, fails in _CHECKS.items() if fails(play, rule))
-    if "not-counted" in reasons:
-        return Verdict(None, reasons)
-    return Verdict(not reasons, reasons)
+    return Verdict(None if reasons == ("not-counted",) else not reasons, reasons)
 
 
 def judge_trial(plays: Iterable[Play], rule: Certificate) -> Verdict:
@@ -107,15 +107,21 @@ def _over(name: str, most: float, play: Play) -> bool:
     return found is not None and found > most
 
 
-def _is_uncounted(play: Play, _rule: Certificate) -> bool:
-    return not number(play, "expected_frames") or number(play, "presented_frames") is None
+def _is_uncounted(play: Play, rule: Certificate) -> bool:
+    enough, by = _are_enough(play, rule), play.get("counted_by")
+    return enough is None or (by == "callbacks" and not enough) or (by == "quality" and enough)
 
 
 def _frames_missing(play: Play, rule: Certificate) -> bool:
+    return _are_enough(play, rule) is False and play.get("counted_by") != "callbacks"
+
+
+def _are_enough(play: Play, rule: Certificate) -> bool | None:
+    """Say whether as many frames are told of as the rule wants; None where nothing is told."""
     expected, presented = number(play, "expected_frames"), number(play, "presented_frames")
     if not expected or presented is None:
-        return False
-    return presented < expected * (1 - rule.max_dropped_share) - UNCOUNTED_FRAMES
+        return None
+    return presented >= expected * (1 - rule.max_dropped_share) - UNCOUNTED_FRAMES
 
 
 def _frames_dropped(play: Play, rule: Certificate) -> bool:

@@ -104,6 +104,36 @@ def test_uncounted_frames_certify_nothing(changes: dict[str, Any]) -> None:
     assert judge(play(**changes), RULE) == Verdict(None, ("not-counted",))
 
 
+@pytest.mark.parametrize(
+    ("presented", "certified"), [(149, True), (148, True), (147, None), (75, None)]
+)
+def test_frames_between_callbacks_are_unknown_and_not_missing(
+    presented: int, *, certified: bool | None
+) -> None:
+    reasons = () if certified else ("not-counted",)
+    told = play(counted_by="callbacks", presented_frames=presented, max_gap_ms=67)
+    assert judge(told, RULE) == Verdict(certified, reasons)
+
+
+@pytest.mark.parametrize(
+    ("changes", "verdict"),
+    [
+        ({}, Verdict(None, ("not-counted",))),
+        ({"presented_frames": 140}, Verdict(False, ("frames-missing",))),
+        ({"dropped_frames": 2}, Verdict(False, ("not-counted", "frames-dropped"))),
+    ],
+)
+def test_playback_quality_proves_what_was_lost_and_not_what_was_shown(
+    changes: dict[str, Any], verdict: Verdict
+) -> None:
+    assert judge(play(counted_by="quality", max_gap_ms=None, **changes), RULE) == verdict
+
+
+def test_what_is_wrong_without_counting_fails_uncounted_frames() -> None:
+    hidden = play(presented_frames=None, hidden_ms=5)
+    assert judge(hidden, RULE) == Verdict(False, ("not-counted", "hidden"))
+
+
 def test_a_study_may_be_stricter_or_laxer() -> None:
     strict = Certificate(may_be_windowed=False, max_dropped_share=0.0)
     assert judge(play(windowed_ms=1, dropped_frames=1), strict).reasons == (
