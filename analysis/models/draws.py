@@ -16,9 +16,16 @@ _FARTHEST: Final = 50.0  # on the latent scale nothing lies there; logarithms st
 
 def draw(found: OrdinalFit, rng: np.random.Generator, *, people: int) -> Floats:
     """Draw parameters (DRAWS, n_parameters) from Student's t about a fit."""
+    return draw_about(found.parameters, found.covariance, rng, people=people)
+
+
+def draw_about(
+    parameters: Floats, covariance: Floats, rng: np.random.Generator, *, people: int
+) -> Floats:
+    """Draw from Student's t about parameters (n,), with one degree of freedom less than people."""
     freedom = max(people - 1, 1)
-    values, vectors = np.linalg.eigh(found.covariance)
+    values, vectors = np.linalg.eigh(covariance)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     normal = rng.standard_normal((DRAWS, len(values))) @ root.T
     away = normal / np.sqrt(rng.chisquare(freedom, (DRAWS, 1)) / freedom)
-    return np.asarray(np.clip(found.parameters + away, -_FARTHEST, _FARTHEST))
+    return np.asarray(np.clip(parameters + away, -_FARTHEST, _FARTHEST))
