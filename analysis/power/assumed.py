@@ -19,6 +19,7 @@ from analysis.decision.margins import Margins
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT
 from analysis.observers import Stimulus
 from analysis.population import POPULATION, Population, rank_of
+from analysis.table import STANDARD_LODS
 
 Floats = NDArray[np.float64]
 Cell = tuple[str, str]
@@ -49,14 +50,17 @@ class Assumed:
         return excess_of(self.sensitivity[distance, lod, best], self.population)
 
     def verdict(self, distance: str, lod: str, *, best: str, margins: Margins) -> str:
-        """Return the right verdict: equivalent or different; empty on a margin, where none is."""
-        beyond = (
-            self.loss(distance, lod, best=best) - margins.realism_points,
-            self.excess(distance, lod, best=best) - margins.noticed_share,
-        )
-        if max(beyond) > EDGE:
+        """Return the right verdict: equivalent or different.
+
+        It is empty on a margin, where none is right, and for a pair never shown that looks as real.
+        """
+        beyond = self.loss(distance, lod, best=best) - margins.realism_points
+        if (distance, lod, best) not in self.sensitivity:
+            return DIFFERENT if beyond > EDGE else ""
+        beyond = max(beyond, self.excess(distance, lod, best=best) - margins.noticed_share)
+        if beyond > EDGE:
             return DIFFERENT
-        return EQUIVALENT if max(beyond) < -EDGE else ""
+        return EQUIVALENT if beyond < -EDGE else ""
 
 
 @dataclass(frozen=True)
@@ -142,17 +146,22 @@ def _yes(d: Floats, population: Population) -> Floats:
 
 
 def best_lods(clips: Iterable[Stimulus], margins: Margins) -> dict[str, str]:
-    """Return the best LoD that is shown at each distance: the sequence's first, or the highest."""
+    """Return the best LoD shown at each distance: the sequence's first, or the highest."""
     shown: dict[str, dict[str, float]] = {}
     for clip in clips:
         own = shown.setdefault(clip.distance, {})
         own[clip.left_lod] = rank_of(clip.left_lod, clip.left_levels)
         own[clip.right_lod] = rank_of(clip.right_lod, clip.right_levels)
-    order = margins.order({})
+    order = order_of(margins)
     return {
         distance: max(own, key=lambda lod: (order.get(lod, -1.0), own[lod], lod))
         for distance, own in shown.items()
     }
+
+
+def order_of(margins: Margins) -> Mapping[str, float]:
+    """Return what orders the LoDs, the best highest, as the verdicts take it."""
+    return margins.order({lod: float(rank) for rank, lod in enumerate(STANDARD_LODS, start=1)})
 
 
 def lower_cells(clips: Iterable[Stimulus], best: Mapping[str, str]) -> list[Cell]:

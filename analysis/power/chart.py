@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Any, Final
 
 import pandas as pd
@@ -16,6 +17,17 @@ from analysis.power.outcome import Outcome
 
 _COLUMNS: Final = 2
 _APART: Final = 0.075  # of the axis: two labels of a line's end stand no closer
+_BAND: Final = "#c9c9c9"
+
+
+@dataclass(frozen=True)
+class _End:
+    """Where a line ends, its name and its look."""
+
+    y: float
+    text: str
+    colour: str
+    width: float
 
 
 def power_chart(outcome: Outcome, *, title: str) -> Figure:
@@ -23,7 +35,8 @@ def power_chart(outcome: Outcome, *, title: str) -> Figure:
     distances = list(dict.fromkeys(outcome.verdicts["distance"]))
     rows = math.ceil(len(distances) / _COLUMNS)
     columns = min(_COLUMNS, len(distances))
-    figure = new_figure(4.6 * columns, 2.9 * rows + 0.7, title, is_simulated=True)
+    height = max(2.9, 0.33 * outcome.verdicts["lod"].nunique() + 0.9)
+    figure = new_figure(4.6 * columns, height * rows + 0.7, title, is_simulated=True)
     panels = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel()
     lods = list(dict.fromkeys(outcome.verdicts["lod"]))
     for axes, distance in zip(panels, distances, strict=False):
@@ -39,9 +52,15 @@ def _panel(axes: Axes, outcome: Outcome, distance: str, lods: list[str]) -> None
     own = outcome.verdicts[outcome.verdicts["distance"] == distance]
     people = sorted(set(own["participants"].astype(int)))
     axes.set_title(distance, fontsize=SMALL + 1, fontweight="bold", color=INK, loc="left")
-    axes.axhline(POWER, color=QUIET, linewidth=0.8, linestyle=(0, (4, 3)), zorder=1)
-    ends: list[tuple[float, str, str]] = []
+    ends: list[_End] = []
     silent: list[str] = []
+    cheapest = outcome.cheapest[outcome.cheapest["distance"] == distance]
+    if not cheapest["right"].isna().any():
+        axes.plot(
+            *(cheapest["participants"], cheapest["right"]), color=_BAND, linewidth=7, zorder=2
+        )
+        text = f"{cheapest['right_lod'].iloc[0]} named as cheapest"
+        ends.append(_End(float(cheapest["right"].iloc[-1]), text, _BAND, 5.0))
     for lod, rows in own.groupby("lod", sort=False):
         name = str(rows["right_verdict"].iloc[0])
         shown = name or "equivalent"
@@ -50,18 +69,19 @@ def _panel(axes: Axes, outcome: Outcome, distance: str, lods: list[str]) -> None
             continue
         colour = lod_colour(str(lod), lods)
         _line(axes, rows, shown, colour=colour, marker=lod_marker(str(lod), lods))
-        label = f"{lod}: {shown}" if name else f"{lod}: equivalent (on the margin)"
-        ends.append((float(rows[shown].iloc[-1]), label, colour))
-    cheapest = outcome.cheapest[outcome.cheapest["distance"] == distance]
-    if not cheapest["right"].isna().any():
-        _line(axes, cheapest, "right", colour=INK, marker="")
-        label = f"{cheapest['right_lod'].iloc[0]} named as cheapest"
-        ends.append((float(cheapest["right"].iloc[-1]), label, INK))
+        text = f"{lod}: {shown}" if name else f"{lod}: {shown}, on the margin"
+        ends.append(_End(float(rows[shown].iloc[-1]), text, colour, 1.2))
+    if ends:
+        axes.plot(
+            *([people[0], people[-1]], [POWER] * 2), color=QUIET, linewidth=0.8, linestyle="--"
+        )
     _label(axes, ends, at=people[-1])
     _axis(axes, people)
     if silent:
-        text = f"cannot be concluded: {', '.join(silent)}"
-        axes.text(0.02, 0.03, text, transform=axes.transAxes, fontsize=SMALL, color=QUIET)
+        few = ", ".join(silent) if len(silent) < 4 else f"{len(silent)} LoDs"
+        place = (0.02, 0.03 if ends else 0.5)
+        text = f"cannot be concluded: {few}"
+        axes.text(*place, text, transform=axes.transAxes, fontsize=SMALL, color=QUIET)
 
 
 def _line(axes: Axes, rows: pd.DataFrame, name: str, *, colour: str, marker: str) -> None:
@@ -77,28 +97,35 @@ def _line(axes: Axes, rows: pd.DataFrame, name: str, *, colour: str, marker: str
         markersize=5,
         markeredgecolor=INK,
         markeredgewidth=0.5,
-        linewidth=2.2 if not marker else 1.4,
+        linewidth=1.4,
         elinewidth=0.9,
         capsize=2,
-        zorder=4 if not marker else 3,
+        zorder=3,
     )
 
 
-def _label(axes: Axes, ends: list[tuple[float, str, str]], *, at: float) -> None:
-    """Write each line's name at its end, moved apart where they meet."""
+def _label(axes: Axes, ends: list[_End], *, at: float) -> None:
+    """Write each line's name at its end, moved apart where they meet, with a leader."""
+    listed = sorted(ends, key=lambda end: end.y)
     places: list[float] = []
-    for y, _, _ in (listed := sorted(ends)):
-        places.append(max(y, places[-1] + _APART) if places else y)
+    for end in listed:
+        places.append(max(end.y, places[-1] + _APART) if places else max(end.y, 0.0))
     over = max(0.0, places[-1] - 1.02) if places else 0.0
-    for place, (_, text, colour) in zip(places, listed, strict=True):
+    for place, end in zip(places, listed, strict=True):
         axes.annotate(
-            text,
-            (at, place - over),
-            xytext=(7, 0),
-            textcoords="offset points",
+            end.text,
+            (at, end.y),
+            xytext=(at * 1.16, place - over),
             va="center",
             fontsize=SMALL,
-            color=INK if colour == INK else colour,
+            color=INK,
+            arrowprops={
+                "arrowstyle": "-",
+                "color": end.colour,
+                "linewidth": end.width,
+                "shrinkA": 1,
+                "shrinkB": 3,
+            },
             annotation_clip=False,
         )
 

@@ -5,12 +5,11 @@ A probability of 0 would read as if more people could help; these need another d
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from analysis.power.assumed import Cell, best_lods
+from analysis.power.assumed import Cell, best_lods, order_of
 from analysis.power.replicates import Scene
-from analysis.table import STANDARD_LODS
 
 
 @dataclass(frozen=True)
@@ -37,11 +36,8 @@ def _reason(scene: Scene, distance: str, lod: str, *, best: str | None) -> Reaso
         return Reason(f"nobody sees anything at {distance}", is_whole=True)
     if (distance, lod) not in scene.truth.realism:
         return Reason(f"nobody sees {lod} at {distance}", is_whole=True)
-    if ranks_of(scene).get(lod, -1.0) < 0:
-        return Reason(
-            f"{lod} has no place in the order of testing; name one in [decision] sequence",
-            is_whole=True,
-        )
+    if order_of(scene.margins).get(best, -1.0) < 0:
+        return Reason(f"no LoD at {distance} has a place in the order of testing", is_whole=True)
     if not any(clip.left_lod == clip.right_lod for clip in scene.plans[0].stimuli):
         return Reason("no equal pairs are shown, so false alarms are unknown")
     if (distance, lod, best) not in scene.truth.sensitivity:
@@ -49,7 +45,8 @@ def _reason(scene: Scene, distance: str, lod: str, *, best: str | None) -> Reaso
     return Reason()
 
 
-def ranks_of(scene: Scene) -> Mapping[str, float]:
-    """Return what orders the LoDs, the best highest, as the verdicts take it."""
-    standard = {lod: float(rank) for rank, lod in enumerate(STANDARD_LODS, start=1)}
-    return scene.margins.order(standard)
+def sequence_of(scene: Scene, distance: str) -> list[str]:
+    """Return the ranked LoDs shown at a distance in the order of testing, the best first."""
+    order = order_of(scene.margins)
+    shown = {lod for where, lod in scene.truth.realism if where == distance}
+    return sorted((lod for lod in shown if order.get(lod, -1.0) >= 0), key=lambda lod: -order[lod])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT, NOT_SHOWN
-from analysis.power.assumed import best_lods
-from analysis.power.concluding import Reason, ranks_of, reasons
+from analysis.power.assumed import Cell, best_lods
+from analysis.power.concluding import Reason, reasons, sequence_of
 from analysis.power.replicates import Scene, Studied
 from analysis.shares import wilson
 
@@ -29,12 +29,13 @@ class Outcome:
     be concluded, and ``cannot_conclude`` says why. ``cheapest`` has a row for each distance and
     number of people: how often the LoD that is named as the cheapest that is enough is the right
     one, a cheaper one or a dearer one. Bounds (``_low``, ``_high``) are Wilson's at 95 %: what the
-    number of replicates leaves open.
+    number of replicates leaves open. ``ranked`` are the LoDs that are tested in sequence.
     """
 
     verdicts: pd.DataFrame
     cheapest: pd.DataFrame
     replicates: int
+    ranked: frozenset[str]
 
 
 def outcome_of(
@@ -52,9 +53,10 @@ def outcome_of(
     cheapest = [
         row
         for distance in distances
-        for row in _cheapest_rows(scene, named, distance, total=len(studies))
+        for row in _cheapest_rows(scene, named, distance, why=why, total=len(studies))
     ]
-    return Outcome(pd.DataFrame(verdicts), pd.DataFrame(cheapest), len(studies))
+    ranked = frozenset(lod for distance in distances for lod in sequence_of(scene, distance))
+    return Outcome(pd.DataFrame(verdicts), pd.DataFrame(cheapest), len(studies), ranked)
 
 
 def _verdict_rows(
@@ -68,7 +70,7 @@ def _verdict_rows(
 ) -> Iterator[dict[str, object]]:
     best = best_lods(scene.plans[0].stimuli, scene.margins).get(distance, "")
     truth = scene.truth
-    is_shown = (distance, lod) in truth.realism and lod != best
+    is_shown = (distance, lod) in truth.realism
     is_paired = (distance, lod, best) in truth.sensitivity
     about: dict[str, object] = {
         "distance": distance,
@@ -77,7 +79,7 @@ def _verdict_rows(
         "true_loss": truth.loss(distance, lod, best=best) if is_shown else np.nan,
         "true_noticed": truth.excess(distance, lod, best=best) if is_paired else np.nan,
         "right_verdict": (
-            truth.verdict(distance, lod, best=best, margins=scene.margins) if is_paired else ""
+            truth.verdict(distance, lod, best=best, margins=scene.margins) if is_shown else ""
         ),
     }
     for people in scene.people:
@@ -90,46 +92,44 @@ def _verdict_rows(
 
 
 def _cheapest_rows(
-    scene: Scene, named: Counter[tuple[int, str, str]], distance: str, *, total: int
+    scene: Scene,
+    named: Counter[tuple[int, str, str]],
+    distance: str,
+    *,
+    why: Mapping[Cell, Reason],
+    total: int,
 ) -> Iterator[dict[str, object]]:
-    right = right_lod(scene, distance)
     order = sequence_of(scene, distance)
+    right, reason = right_lod(scene, distance, why)
     for people in scene.people:
         counts: Counter[str] = Counter()
-        for lod in order if right else ():
-            kind = np.sign(order.index(lod) - order.index(right))
+        for place, lod in enumerate(order):
+            kind = np.sign(place - order.index(right)) if right else 0
             counts[(RIGHT, TOO_CHEAP, TOO_DEAR)[int(kind)]] += named[people, distance, lod]
         row: dict[str, object] = {"distance": distance, "participants": people}
-        row |= {"replicates": total, "right_lod": right}
-        for kind_name in (RIGHT, TOO_CHEAP, TOO_DEAR):
-            row |= _share(kind_name, counts[kind_name], total if right else 0)
-        yield row
+        row |= {"replicates": total, "best": order[0] if len(order) > 1 else "", "right_lod": right}
+        for name in (RIGHT, TOO_CHEAP, TOO_DEAR):
+            row |= _share(name, counts[name], 0 if reason else total)
+        yield row | {"cannot_conclude": reason}
 
 
-def right_lod(scene: Scene, distance: str) -> str:
-    """Return the LoD that ought to be named: the last before the first that is not enough.
+def right_lod(scene: Scene, distance: str, why: Mapping[Cell, Reason]) -> tuple[str, str]:
+    """Return the LoD that ought to be named, and what of the design stands in the way of it.
 
-    Empty where no decision can be made at the distance.
+    It is the last one before the first that is not enough; empty where there are no two LoDs.
     """
     order = sequence_of(scene, distance)
     if len(order) < 2:
-        return ""
+        return "", "fewer than two LoDs with a place in the order of testing are shown"
     best, *lower = order
-    for i, lod in enumerate(lower):
-        if (distance, lod, best) not in scene.truth.sensitivity:
-            return order[i]  # never beside the best: nothing can be shown for it
-        if scene.truth.verdict(distance, lod, best=best, margins=scene.margins) != EQUIVALENT:
-            return order[i]
-    return lower[-1]
-
-
-def sequence_of(scene: Scene, distance: str) -> list[str]:
-    """Return the LoDs shown at a distance in the order of testing, the best first."""
-    ranks = ranks_of(scene)
-    own = {
-        lod for where, lod in scene.truth.realism if where == distance and ranks.get(lod, -1) >= 0
-    }
-    return sorted(own, key=lambda lod: -ranks[lod])
+    right, reason = best, ""
+    for lod in lower:
+        verdict = scene.truth.verdict(distance, lod, best=best, margins=scene.margins)
+        own = why[distance, lod].text
+        if verdict == DIFFERENT or (verdict != EQUIVALENT and not own):
+            break
+        right, reason = (lod, reason or own)
+    return ("" if reason else right), reason
 
 
 def _share(name: str, count: int, total: int) -> dict[str, object]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from analysis.decision.effects import EffectVerdict, decide_effects
 from analysis.decision.margins import Margins
 from analysis.decision.verdicts import Decision, decide
 from analysis.estimates.noticing import Noticing, noticing_of
@@ -32,6 +33,23 @@ from analysis.table import SCALE
 
 
 @dataclass(frozen=True)
+class Decided:
+    """What one study came to: LoDs with a rank along their sequence, the others one by one."""
+
+    decisions: list[Decision]
+    effects: list[EffectVerdict]
+
+    def verdicts(self) -> list[tuple[str, str, str]]:
+        """Return (distance, LoD, verdict) of every LoD that was decided on."""
+        ranked = [
+            (decision.distance, verdict.lod, verdict.outcome)
+            for decision in self.decisions
+            for verdict in decision.verdicts
+        ]
+        return ranked + [(own.distance, own.lod, own.outcome) for own in self.effects]
+
+
+@dataclass(frozen=True)
 class Prepared:
     """A plan's models, ready for counts; ``noticing`` is None where catch pairs are missing.
 
@@ -47,26 +65,27 @@ class Prepared:
     right: Integers
     pair: Integers
 
-    def decisions(
+    def decide(
         self,
         answers: Answers,
         rng: np.random.Generator,
         *,
         margins: Margins,
         seen: NDArray[np.bool_] | None = None,
-    ) -> list[Decision]:
+    ) -> Decided:
         """Return the verdicts of one study; ``seen`` (n_presentations,) leaves out the others."""
         there = np.ones(len(self.plan.person), dtype=bool) if seen is None else seen
-        return decide(
-            self._realism(answers, there, rng),
-            self._noticing(answers, there, rng),
-            self.ranks,
-            margins=margins,
+        realism = self.realism_of(answers, there, rng)
+        noticing = self.noticing_of(answers, there, rng)
+        return Decided(
+            decide(realism, noticing, self.ranks, margins=margins),
+            decide_effects(realism, noticing, self.ranks, levels={}, margins=margins),
         )
 
-    def _realism(
+    def realism_of(
         self, answers: Answers, seen: NDArray[np.bool_], rng: np.random.Generator
     ) -> Realism:
+        """Fit realism to one study's answers, those that were seen."""
         plan, own = self.plan, self.realism.stimuli
         person = np.concatenate([plan.person, plan.person])
         stimulus = np.concatenate([self.left[plan.clip], self.right[plan.clip]])
@@ -82,9 +101,10 @@ class Prepared:
         draws = draw(found, rng, people=counts.people)
         return replace(self.realism, stimuli=replace(own, counts=counts), fit=found, draws=draws)
 
-    def _noticing(
+    def noticing_of(
         self, answers: Answers, seen: NDArray[np.bool_], rng: np.random.Generator
     ) -> Noticing | None:
+        """Fit noticing to one study's answers, those that were seen."""
         known, plan = self.noticing, self.plan
         if known is None:
             return None

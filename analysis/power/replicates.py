@@ -146,16 +146,12 @@ def _study(task: _Task, number: int) -> Studied:
     chosen: list[tuple[int, str, str]] = []
     for people in scene.people:
         first = plan.person < people
-        own = Answers(*(column[first] for column in answers.columns()))
-        decided = task.prepared[which, people].decisions(
-            own, rng, margins=scene.margins, seen=seen[first]
+        given = Answers(*(column[first] for column in answers.columns()))
+        decided = task.prepared[which, people].decide(
+            given, rng, margins=scene.margins, seen=seen[first]
         )
-        chosen += [(people, decision.distance, decision.lod) for decision in decided]
-        verdicts += [
-            (people, decision.distance, verdict.lod, verdict.outcome)
-            for decision in decided
-            for verdict in decision.verdicts
-        ]
+        chosen += [(people, own.distance, own.lod) for own in decided.decisions]
+        verdicts += [(people, *verdict) for verdict in decided.verdicts()]
     return Studied(tuple(verdicts), tuple(chosen))
 
 

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 import pandas as pd
 
 from analysis.power.needed import POWER, Needed, needed_people
 from analysis.power.outcome import Outcome
-from analysis.wording import number, percent
+from analysis.wording import listed, number, percent
 
 Row = Mapping[str, Any]
 
 
 def answer_lines(outcome: Outcome) -> list[str]:
     """Return one sentence per distance, then what the design cannot conclude."""
-    found = [_distance(rows) for _, rows in outcome.cheapest.groupby("distance", sort=False)]
-    return [*found, *_cannot(outcome.verdicts)]
+    rows = outcome.cheapest[outcome.cheapest["best"] != ""]
+    found = [_distance(own) for _, own in rows.groupby("distance", sort=False)]
+    single = _one_by_one(outcome.verdicts, outcome.ranked)
+    return [*found, *single, *_cannot(outcome.verdicts)]
 
 
 def needed_for(rows: pd.DataFrame, name: str) -> Needed:
@@ -37,38 +39,54 @@ def share_text(row: Row, name: str) -> str:
     return f"{percent(row[name])} ({low} to {high})"
 
 
-def needed_text(needed: Needed) -> str:
-    """Say how many people the wanted power takes."""
-    aim = percent(needed.power)
+def needed_text(needed: Needed, *, short: bool = False) -> str:
+    """Say how many people the wanted power takes; ``short`` leaves the power out."""
+    start = "" if short else f"{percent(needed.power)} takes "
     if needed.is_at_most:
-        return f"{aim} takes {needed.people} people or fewer"
+        return f"{start}{needed.people} people or fewer"
     if needed.people is None:
-        return f"{aim} takes more people than were simulated"
+        return f"{start}more people than were simulated"
     if needed.low is not None and needed.high is not None:
-        return f"{aim} takes about {needed.people} people ({needed.low} to {needed.high})"
-    return f"{aim} takes about {needed.people} people"
+        return f"{start}about {needed.people} people ({needed.low} to {needed.high})"
+    return f"{start}about {needed.people} people"
 
 
 def _distance(rows: pd.DataFrame) -> str:
-    listed = [dict(row) for _, row in rows.sort_values("participants").iterrows()]
-    distance, right = listed[0]["distance"], listed[0]["right_lod"]
-    if not right:
-        return f"{distance}: no decision can be made; fewer than two LoDs are shown there."
-    reached = [row for row in listed if row["right"] >= POWER]
-    row = reached[0] if reached else listed[-1]
-    people, wrong = f"With {row['participants']} people", share_text(row, "too_cheap")
-    if row["too_dear"] == 0 and all(other["too_dear"] == 0 for other in listed):
+    own = _records(rows)
+    distance, right, reason = (own[0][key] for key in ("distance", "right_lod", "cannot_conclude"))
+    if reason:
+        return f"{distance}: no LoD can be named as the cheapest that is enough: {reason}."
+    row = next((row for row in own if row["right"] >= POWER), own[-1])
+    wrong = share_text(own[-1] if right == own[-1]["best"] else row, "too_cheap")
+    if right == row["best"]:
         return (
-            f"{distance}: nothing below {right} is enough here. {people}, {wrong} of studies name "
-            "a cheaper LoD all the same."
+            f"{distance}: nothing below {right} is enough here; with {own[-1]['participants']} "
+            f"people, {wrong} of studies name a cheaper LoD all the same."
         )
     text = (
-        f"{distance}: {people.lower()}, {share_text(row, 'right')} of studies name {right}, the "
-        f"cheapest LoD that is enough here; {needed_text(needed_for(rows, 'right'))}."
+        f"{distance}: with {row['participants']} people, {share_text(row, 'right')} of studies "
+        f"name {right}, the cheapest LoD that is enough here; "
+        f"{needed_text(needed_for(rows, 'right'))}."
     )
-    if row["too_cheap"] > 0:
-        text += f" A cheaper one is named in {wrong}."
-    return text
+    return f"{text} A cheaper one is named in {wrong}." if row["too_cheap"] > 0 else text
+
+
+def _one_by_one(verdicts: pd.DataFrame, ranked: Collection[str]) -> Iterator[str]:
+    """Yield how many people LoDs without a rank take, which are decided on one by one."""
+    own = verdicts[~verdicts["lod"].isin(ranked) & (verdicts["cannot_conclude"] == "")]
+    for distance, rows in own.groupby("distance", sort=False):
+        needed = {
+            str(lod): needed_for(each, name)
+            for lod, each in rows.groupby("lod", sort=False)
+            if (name := str(each["right_verdict"].iloc[0]))
+        }
+        reached = [f"{lod} {needed_text(n, short=True)}" for lod, n in needed.items() if n.people]
+        beyond = [lod for lod, own_needed in needed.items() if own_needed.people is None]
+        if beyond:
+            reached.append(f"{listed(beyond)} more people than were simulated")
+        if needed:
+            aim = f"the right verdict in {percent(POWER)} of studies"
+            yield f"{distance}: {aim} takes {', '.join(reached)}."
 
 
 def _cannot(verdicts: pd.DataFrame) -> list[str]:
@@ -80,28 +98,39 @@ def _cannot(verdicts: pd.DataFrame) -> list[str]:
         found.setdefault((str(row["cannot_conclude"]), is_whole), []).append(place)
     return [
         f"Cannot be concluded, however many take part: {'anything' if is_whole else 'equivalence'} "
-        f"of {', '.join(places)} ({reason})."
+        f"of {listed(places)} ({reason})."
         for (reason, is_whole), places in found.items()
     ]
 
 
 def table_lines(outcome: Outcome) -> Iterator[str]:
     """Yield the share of right verdicts for each distance, LoD and number of people."""
-    people = sorted(set(outcome.verdicts["participants"].astype(int)))
-    head = [f"{count} people" for count in people]
-    yield _line("distance", "LoD", "assumed", "right verdict", head)
+    head = [f"{n} people" for n in sorted(set(outcome.verdicts["participants"].astype(int)))]
+    lines = [["distance", "LoD", "assumed", "right verdict", *head]]
     for _, rows in outcome.verdicts.groupby(["distance", "lod"], sort=False):
-        listed = [dict(row) for _, row in rows.sort_values("participants").iterrows()]
-        first = listed[0]
-        name = str(first["right_verdict"])
-        shares = [_cell(row, name) for row in listed]
-        yield _line(first["distance"], first["lod"], _assumed(first), name or "(none)", shares)
+        own = _records(rows)
+        name = str(own[0]["right_verdict"])
+        start = [own[0]["distance"], own[0]["lod"], _assumed(own[0]), name or "none"]
+        lines.append([*start, *(_cell(row, name) for row in own)])
+    yield from _aligned(lines)
+    rows = outcome.cheapest[outcome.cheapest["best"] != ""]
+    if rows.empty:  # no LoD has a place in an order
+        return
     yield ""
-    yield _line("distance", "cheapest that is enough", "", "named", head)
-    for _, rows in outcome.cheapest.groupby("distance", sort=False):
-        listed = [dict(row) for _, row in rows.sort_values("participants").iterrows()]
-        own = [_cell(row, "right") for row in listed]
-        yield _line(listed[0]["distance"], listed[0]["right_lod"] or "-", "", "right", own)
+    lines = [["distance", "cheapest that is enough", *(f"named by {words}" for words in head)]]
+    for _, each in rows.groupby("distance", sort=False):
+        own = _records(each)
+        start = [own[0]["distance"], own[0]["right_lod"] or "–"]
+        lines.append([*start, *(_cell(row, "right") for row in own)])
+    yield from _aligned(lines, left=2)
+
+
+def _records(rows: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return rows by rising number of people."""
+    return [
+        {str(k): v for k, v in row.items()}
+        for _, row in rows.sort_values("participants").iterrows()
+    ]
 
 
 def _cell(row: Row, name: str) -> str:
@@ -114,9 +143,15 @@ def _assumed(row: Row) -> str:
     if pd.isna(row["true_loss"]):
         return "not shown"
     seen = "?" if pd.isna(row["true_noticed"]) else percent(row["true_noticed"])
-    return f"-{number(row['true_loss'])} points, {seen}"
+    return f"{number(-row['true_loss'])} points, {seen}"
 
 
-def _line(distance: str, lod: str, assumed: str, verdict: str, cells: list[str]) -> str:
-    start = f"{distance:13}{lod:24}" if not assumed else f"{distance:13}{lod:8}{assumed:20}"
-    return (f"{start:41}{verdict:15}" + "".join(f"{cell:>11}" for cell in cells)).rstrip()
+def _aligned(lines: list[list[str]], *, left: int = 4) -> Iterator[str]:
+    """Yield rows with their columns under each other, the first ones to the left."""
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        cells = [
+            f"{cell:<{width}}" if i < left else f"{cell:>{width}}"
+            for i, (cell, width) in enumerate(zip(line, widths, strict=True))
+        ]
+        yield "  ".join(cells).rstrip()
