@@ -3,28 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
-from zlib import crc32
+from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from analysis.cost import Costs
 from analysis.curves.along_sizes import NO_CURVES, Curves, curves_of
 from analysis.curves.curve import curve_table, point_table, threshold_table
+from analysis.deciding import (
+    SEED,
+    count_people,
+    decide_by,
+    experts_of,
+    fit_noticing,
+    fit_realism,
+    rng_of,
+)
 from analysis.decision.effects import EffectVerdict, decide_effects, effect_table, levels_of
 from analysis.decision.margins import Margins
 from analysis.decision.pareto import ParetoPoint, pareto, pareto_table
 from analysis.decision.policy import Policy, policy_for
-from analysis.decision.verdicts import Decision, decide, verdict_table
-from analysis.descriptive import answered
-from analysis.estimates.noticing import Noticing, noticing_of
+from analysis.decision.verdicts import Decision, verdict_table
+from analysis.estimates.joint import Joint, joint_of
+from analysis.estimates.linkage import Linkage, linkage_of
+from analysis.estimates.noticing import Noticing
 from analysis.estimates.preference import Preference, preference_of
-from analysis.estimates.realism import Realism, realism_of
+from analysis.estimates.realism import Realism
 from analysis.ordering import lod_ranks
 from analysis.reading import Tables
 
-SEED: Final = 20120831  # of the draws; the same tables give the same report
+__all__ = ["SEED", "Inference", "infer"]
 
 
 @dataclass(frozen=True)
@@ -33,7 +41,8 @@ class Inference:
 
     ``decisions`` are the verdicts on LoDs with a rank, ``effects`` those on LoDs without one;
     ``curves`` run along the iris's size and ``policy`` follows from them; ``pareto`` sets realism
-    against cost, empty without a benchmark.
+    against cost, empty without a benchmark; ``joint`` is the scale of ratings and comparisons and
+    ``linkage`` what links it.
     """
 
     realism: Realism | None
@@ -46,6 +55,14 @@ class Inference:
     policy: Policy | None = None
     pareto: tuple[ParetoPoint, ...] = ()
     costs: Costs | None = None
+    joint: Joint | None = None
+    linkage: Linkage | None = None
+
+    @property
+    def best(self) -> dict[str, str]:
+        """Each distance's best LoD, as far as verdicts name one."""
+        named = {own.distance: own.best for own in self.effects}
+        return named | {own.distance: own.best for own in self.decisions}
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """Return the numbers by file name; models that could not be fitted are left out."""
@@ -62,6 +79,8 @@ class Inference:
             made["thresholds"] = threshold_table(self.curves.curves)
         if self.pareto:
             made["pareto"] = pareto_table(self.pareto)
+        if self.joint:
+            made["joint-scale"] = self.joint.table(self.best)
         for name, model in (
             ("realism-model", self.realism),
             ("preference-model", self.preference),
@@ -95,23 +114,23 @@ def infer(
     count for less than one; ``costs`` are what LoDs cost where that was measured.
     """
     margins = margins or tables.margins
-    if _people(tables) < 2:  # one person says nothing about others
+    if count_people(tables) < 2:  # one person says nothing about others
         return Inference(None, None, None, (), margins, costs=costs)
-    realism, noticing = _realism(tables, weights), _noticing(tables, weights)
+    realism, noticing = fit_realism(tables, weights), fit_noticing(tables, weights)
     ranks, levels = lod_ranks(tables.ratings), levels_of(tables.ratings)
     curves = curves_of(
         tables,
-        _rng("curves"),
+        rng_of("curves"),
         margins=margins,
         ranks=margins.order(ranks),
-        experts=_experts(tables),
+        experts=experts_of(tables),
         weights=weights,
     )
-    decisions = _decisions(tables, realism, noticing, margins)
+    decisions = decide_by(tables, realism, noticing, margins)
     return Inference(
         realism=realism,
         preference=preference_of(
-            tables.comparisons, tables.ratings, _rng("preference"), weights=weights
+            tables.comparisons, tables.ratings, rng_of("preference"), weights=weights
         ),
         noticing=noticing,
         decisions=decisions,
@@ -125,59 +144,10 @@ def infer(
         policy=policy_for(tables, curves, decisions=decisions, margins=margins, costs=costs),
         pareto=pareto(realism, costs) if realism and costs else (),
         costs=costs,
+        joint=(
+            joint_of(realism, tables.comparisons, rng_of("joint"), weights=weights)
+            if realism
+            else None
+        ),
+        linkage=linkage_of(tables.ratings, tables.comparisons),
     )
-
-
-def decisions_of(
-    tables: Tables, *, margins: Margins | None = None, weights: dict[str, float] | None = None
-) -> tuple[Decision, ...]:
-    """Return the decisions of ``infer`` alone: fits nothing that they do not rest on."""
-    margins = margins or tables.margins
-    if _people(tables) < 2:
-        return ()
-    return _decisions(tables, _realism(tables, weights), _noticing(tables, weights), margins)
-
-
-def _people(tables: Tables) -> int:
-    return len({*tables.ratings["participant"], *tables.comparisons["participant"]})
-
-
-def _rng(model: str) -> np.random.Generator:
-    """Return each model's own draws: they do not depend on which other models are fitted."""
-    return np.random.default_rng([SEED, crc32(model.encode())])
-
-
-def _realism(tables: Tables, weights: dict[str, float] | None) -> Realism | None:
-    if not len(answered(tables.ratings)):
-        return None
-    return realism_of(
-        tables.ratings,
-        _rng("realism"),
-        scale=tables.scale,
-        experts=_experts(tables),
-        weights=weights,
-    )
-
-
-def _noticing(tables: Tables, weights: dict[str, float] | None) -> Noticing | None:
-    return noticing_of(tables.comparisons, tables.ratings, _rng("noticing"), weights=weights)
-
-
-def _decisions(
-    tables: Tables, realism: Realism | None, noticing: Noticing | None, margins: Margins
-) -> tuple[Decision, ...]:
-    if realism is None:
-        return ()
-    return tuple(decide(realism, noticing, lod_ranks(tables.ratings), margins=margins))
-
-
-def _experts(tables: Tables) -> dict[str, bool]:
-    """Return who works with graphics, as far as they said."""
-    people = tables.participants
-    if people.empty or "works_with_graphics" not in people:
-        return {}
-    said = people.dropna(subset=["works_with_graphics"])
-    return {
-        str(who): str(answer) == "yes"
-        for who, answer in zip(said["participant"], said["works_with_graphics"], strict=True)
-    }

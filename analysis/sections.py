@@ -13,7 +13,8 @@ import pandas as pd
 
 from analysis.claims import claims_table
 from analysis.coding import ManualCodes, code_remarks, mention_rates, unused_codes
-from analysis.inference import SEED, Inference, infer
+from analysis.deciding import decisions_of
+from analysis.inference import SEED, Inference
 from analysis.models.ordinal import LENIENCY
 from analysis.observer_tables import (
     flag_sentences,
@@ -109,7 +110,7 @@ def _sensitivity(
         flags,
         usual=inference.decisions,
         weights=weights,
-        decide=lambda own, w: infer(own, margins=inference.margins, weights=w or None).decisions,
+        decide=lambda own, w: decisions_of(own, margins=inference.margins, weights=w or None),
         most=_MOST_ALONE if is_quick else 0,
     )
 

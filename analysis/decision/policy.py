@@ -150,10 +150,11 @@ def policy_for(
     margins: Margins,
     costs: Costs | None,
 ) -> Policy | None:
-    """Derive a study's policy; None where no curve over pixels tells anything."""
+    """Derive a study's policy; None where no LoD with a rank has a curve over pixels."""
     ranks = margins.order(lod_ranks(tables.ratings))
     best = best_lod(tables.ratings, tables.comparisons, ranks)
-    if best is None or not any(curves.of(kind) for kind in _QUESTIONS):
+    ranked = {lod for kind in _QUESTIONS for lod in curves.of(kind) if ranks.get(lod, -1.0) >= 0}
+    if best is None or not ranked:
         return None
     return policy_of(
         curves,

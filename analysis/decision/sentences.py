@@ -1,13 +1,20 @@
-"""The designer's answer in one sentence per distance, with its uncertainty."""
+"""The designer's answer in one sentence per distance, with its uncertainty and what it saves."""
 
 from __future__ import annotations
 
+import math
+
+from analysis.cost import Costs
 from analysis.decision.verdicts import DIFFERENT, Decision, Verdict
-from analysis.wording import listed, number, percent
+from analysis.savings import Saving, lod_saving
+from analysis.wording import listed, milliseconds, number, percent
 
 
-def answer(decision: Decision) -> str:
-    """Say which LoD is enough at one distance, by how much it may fall short, and what failed."""
+def answer(decision: Decision, costs: Costs | None = None) -> str:
+    """Say which LoD is enough at one distance, by how much it may fall short, and what failed.
+
+    With ``costs`` also what it saves against the best.
+    """
     passed = [v for v in decision.verdicts if v.lod == decision.lod]
     if not passed:
         return f"only {decision.best} was shown to be enough: {_failures(decision)}."
@@ -15,6 +22,9 @@ def answer(decision: Decision) -> str:
     parts = [f"{last.lod} is enough: {_bounds(last)}"]
     if (share := last.share_cheapest) < 0.995:
         parts.append(f"it is the cheapest that is enough in {percent(share)} of the draws")
+    if costs is not None:
+        saved = lod_saving(costs, decision.distance, last.lod, best=last.best)
+        parts.append(price(saved) if saved else "what it saves was not measured here")
     if failures := _failures(decision, beyond=last.lod):
         parts.append(failures)
     return "; ".join(parts) + "."
@@ -33,6 +43,28 @@ def _bounds(verdict: Verdict) -> str:
     )
 
 
+def price(saving: Saving) -> str:
+    """Write what a LoD saves: milliseconds per eye, and the share of the frame if known."""
+    if saving.high <= 0:
+        return f"it saves nothing: {_milliseconds(-saving.ms)} per eye are added"
+    text = (
+        f"it saves {_milliseconds(saving.ms)} per eye ({_milliseconds(saving.low)} to "
+        f"{_milliseconds(saving.high)})"
+    )
+    if saving.low <= 0:
+        text += ", not told apart from nothing"
+    if not math.isfinite(saving.share):
+        return text
+    return (
+        f"{text}, {percent(saving.share)} of the frame ({percent(saving.share_low)} to "
+        f"{percent(saving.share_high)})"
+    )
+
+
+def _milliseconds(value: float) -> str:
+    return milliseconds(abs(value)) if value >= 0 else f"−{milliseconds(-value)}"
+
+
 def _failures(decision: Decision, *, beyond: str | None = None) -> str:
     names = [verdict.lod for verdict in decision.verdicts]
     rest = decision.verdicts[names.index(beyond) + 1 if beyond else 0 :]
@@ -46,7 +78,9 @@ def _failure(verdict: Verdict) -> str:
             reasons.append(f"rated {number(verdict.realism.value)} points lower")
         if verdict.noticed is not None and verdict.noticed.fails:
             reasons.append(f"noticed by {percent(verdict.noticed.value)} beyond false alarms")
-        return f"{verdict.lod} is not ({' and '.join(reasons)})"
+            if verdict.realism.passes:
+                reasons.append("different but not rated lower")
+        return f"{verdict.lod} is not ({listed(reasons)})"
     if not verdict.is_reached:
         return f"{verdict.lod} was not tested after that"
     return f"for {verdict.lod} it was not shown ({_doubt(verdict)})"

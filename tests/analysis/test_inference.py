@@ -44,6 +44,7 @@ def test_near_a_cheap_eye_is_different_and_far_it_is_enough(tables: Tables) -> N
         "curves",
         "curve-points",
         "thresholds",
+        "joint-scale",
     }
 
 
