@@ -6,13 +6,12 @@ and a separated cell at infinity otherwise. Without, it is the maximum likelihoo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from analysis.models.counts import Counts
 from analysis.models.grids import (
@@ -23,15 +22,14 @@ from analysis.models.grids import (
     thinned,
 )
 from analysis.models.likelihood import log_likelihood
+from analysis.models.optimum import Objective, climb, hessian, inverse_of
 from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE, OrdinalModel
 from analysis.models.priors import PRIORS, Priors
 from analysis.models.quadrature import Grid
 
 Floats = NDArray[np.float64]
 _START_SD: Final[Mapping[str, float]] = {LENIENCY: 0.5, INCONSISTENCY: 0.2, STYLE: 0.2}
-_SILENT: Final = 0.01  # curvature of a direction with a standard error of 10: no answer at all
 _FLAT: Final = "the data leave some parameters without an upper or lower bound"
-_STEP: Final = 1e-5  # of the gradient's differences: its own error is about 1e-10
 
 
 @dataclass(frozen=True)
@@ -78,29 +76,38 @@ def fit(
     weights: Floats | None = None,
     start: Floats | None = None,
     grid: Grid | None = None,
+    near: OrdinalFit | None = None,
 ) -> OrdinalFit:
     """Fit a model to counts; without ``priors`` by maximum likelihood.
 
-    ``weights`` (n_people,) are those of a bootstrap; ``start`` and ``grid`` those of an earlier
-    fit: then the grid is taken as it is. Raises ValueError for counts of another shape, or with a
-    category that nobody used when there are no priors.
+    ``weights`` (n_people,) are those of a bootstrap. ``near`` is a fit of the same model to nearly
+    the same answers, from where a few steps lead to this one's; ``start`` are parameters, and a
+    ``grid`` is taken as it is. Raises ValueError for counts of another shape, or with a category
+    that nobody used when there are no priors.
     """
     _check(model, counts, priors)
     problem = _Problem(model, counts, priors, weights)
+    if near is not None:
+        return _refit(problem, near)
     parameters = _start(model, counts) if start is None else start
+    inverse = None
     if grid is not None:
-        return problem.finish(grid, _climb(problem.target(grid), parameters), [])
-    curvature = None
+        return problem.finish(grid, climb(problem.target(grid), parameters)[0], [])
     if len(model.effects) > 1 and start is None:
-        target = problem.target(thinned(model, parameters, counts, coarse_grid(model)))
-        parameters = _climb(target, parameters)
-        curvature = _hessian(target, parameters)
-    whole = first_grid(model, counts)
+        coarse = thinned(model, parameters, counts, coarse_grid(model))
+        parameters, inverse = climb(problem.target(coarse), parameters)
+    return _on_fine_grid(problem, parameters, inverse)
+
+
+def _on_fine_grid(problem: _Problem, parameters: Floats, inverse: Floats | None) -> OrdinalFit:
+    """Climb to the optimum, and refine the grid until it no longer matters there."""
+    model, counts = problem.model, problem.counts
+    whole = first_grid(model, counts, parameters)
     warnings: list[str] = []
     while True:
         grid = thinned(model, parameters, counts, whole)
-        parameters = _climb(problem.target(grid), parameters, curvature=curvature)
-        better = refined_grid(model, parameters, counts, whole, weights=weights)
+        parameters, inverse = climb(problem.target(grid), parameters, inverse=inverse)
+        better = refined_grid(model, parameters, counts, grid, weights=problem.weights)
         if better is None:
             break
         if is_too_large(better):
@@ -113,7 +120,13 @@ def fit(
     return problem.finish(grid, parameters, warnings)
 
 
-Objective = Callable[[Floats], tuple[float, Floats]]
+def _refit(problem: _Problem, near: OrdinalFit) -> OrdinalFit:
+    """Step from an earlier fit to this one's optimum, on the earlier one's grid."""
+    if near.model.names != problem.model.names:
+        raise ValueError(f"near: a fit of {near.model.names}; wanted {problem.model.names}")
+    target = problem.target(near.grid)
+    parameters = climb(target, near.parameters, inverse=near.covariance)[0]
+    return problem.finish(near.grid, parameters, list(near.warnings))
 
 
 @dataclass(frozen=True)
@@ -145,9 +158,10 @@ class _Problem:
     def finish(self, grid: Grid, parameters: Floats, warnings: list[str]) -> OrdinalFit:
         """Take the Newton step that BFGS's own stop leaves out, and invert the Hessian."""
         target = self.target(grid)
-        covariance, is_flat = _inverse(_hessian(target, parameters))
+        covariance, is_flat = inverse_of(hessian(target, parameters))
         value, gradient = target(parameters)
         nearer = parameters - np.clip(covariance @ gradient, -0.5, 0.5)
+        warnings = [warning for warning in warnings if warning != _FLAT]
         if is_flat:
             warnings = [*warnings, _FLAT]
         elif target(nearer)[0] <= value:
@@ -162,38 +176,6 @@ class _Problem:
             self.priors,
             tuple(warnings),
         )
-
-
-def _climb(target: Objective, start: Floats, *, curvature: Floats | None = None) -> Floats:
-    """Minimise by BFGS; ``curvature`` is the Hessian near the optimum, where it is known."""
-    scale = max(1.0, float(np.abs(target(start)[1]).max()))
-
-    def scaled(parameters: Floats) -> tuple[float, Floats]:
-        value, gradient = target(np.clip(parameters, -30.0, 30.0))
-        return value / scale, gradient / scale
-
-    options: Any = {"gtol": 1e-6, "maxiter": 500}
-    if curvature is not None:
-        options["hess_inv0"] = _inverse(curvature)[0] * scale
-    found = minimize(scaled, start, jac=True, method="BFGS", options=options)
-    return np.asarray(found.x, dtype=float)
-
-
-def _hessian(target: Objective, parameters: Floats) -> Floats:
-    centre = target(parameters)[1]
-    rows = []
-    for step in np.eye(len(parameters)) * _STEP:
-        rows.append((target(parameters + step)[1] - centre) / _STEP)
-    hessian = np.array(rows)
-    result: Floats = (hessian + hessian.T) / 2
-    return result
-
-
-def _inverse(hessian: Floats) -> tuple[Floats, bool]:
-    """Invert a Hessian; say whether the data are silent in some direction."""
-    values, vectors = np.linalg.eigh(hessian)
-    inverse = (vectors / np.maximum(values, 1e-6)) @ vectors.T
-    return (inverse + inverse.T) / 2, bool((values < _SILENT).any())
 
 
 def _check(model: OrdinalModel, counts: Counts, priors: Priors | None) -> None:

@@ -1,4 +1,8 @@
-"""How fine an integration grid must be: guessed from the answers, checked at the optimum."""
+"""How fine an integration grid must be: chosen from the answers, checked at the optimum.
+
+The trapezoidal rule on a bell-shaped integrand errs by exp(-2 pi^2 s^2 / h^2), with s the bell's
+width and h the spacing: what a person's answers leave open about the person gives s.
+"""
 
 from __future__ import annotations
 
@@ -9,21 +13,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from analysis.models.counts import Counts
-from analysis.models.likelihood import log_likelihood, visited
+from analysis.models.likelihood import person_log_likelihoods, visited
 from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE, OrdinalModel
 from analysis.models.quadrature import Grid, normal_grid
 
 Floats = NDArray[np.float64]
-# Nodes per direction: (fewest, most at first, per square root of a person's answers).
-_SIZES: Final[Mapping[str, tuple[int, int, float]]] = {
-    LENIENCY: (21, 161, 8.0),
-    INCONSISTENCY: (9, 17, 1.5),
-    STYLE: (9, 13, 1.2),
+# Spacing in units of what the busiest person's answers leave open; alone, and beside others. An
+# answer says less about scatter and style than about leniency, so their spacing may be wider.
+_SPACING: Final[Mapping[str, tuple[float, float]]] = {
+    LENIENCY: (1.0, 1.35),
+    INCONSISTENCY: (1.2, 1.7),
+    STYLE: (1.2, 1.7),
 }
 _REACH: Final[Mapping[str, float]] = {LENIENCY: 5.5, INCONSISTENCY: 4.0, STYLE: 4.0}
+_FEWEST: Final[Mapping[str, int]] = {LENIENCY: 21, INCONSISTENCY: 7, STYLE: 7}
 _COARSE: Final[Mapping[str, int]] = {LENIENCY: 31, INCONSISTENCY: 7, STYLE: 7}
-_TOLERANCE: Final = (1e-3, 0.05)  # in log-likelihood: with one effect, with more
-_UNVISITED: Final = 1e-9  # a node where nobody is more likely than this is left out
+_TOLERANCE: Final = (1e-4, 0.05)  # in log-likelihood: with one effect, with more
+_UNVISITED: Final = 1e-7  # a node where nobody is more likely than this is left out
 _MOST_NODES, _MOST_CELLS = 1281, 40_000  # in one direction, and in all
 
 
@@ -32,11 +38,17 @@ def coarse_grid(model: OrdinalModel) -> Grid:
     return _grid(model, [_COARSE[effect] for effect in model.effects])
 
 
-def first_grid(model: OrdinalModel, counts: Counts) -> Grid:
+def first_grid(model: OrdinalModel, counts: Counts, parameters: Floats) -> Grid:
     """Choose nodes no further apart than what a person's answers leave open about the person."""
-    known = np.sqrt(1.0 + counts.most_per_person / model.link.sd**2)
-    sizes = [int(np.clip(_SIZES[e][2] * known, _SIZES[e][0], _SIZES[e][1])) for e in model.effects]
-    return _grid(model, [size + 1 - size % 2 for size in sizes])
+    is_alone = len(model.effects) < 2
+    spreads = dict(zip(model.effects, np.exp(parameters[model.slices["spread"]]), strict=True))
+    sizes = []
+    for effect, sd in spreads.items():
+        known = np.sqrt(1.0 + counts.most_per_person * (sd / model.link.sd) ** 2)
+        spacing = _SPACING[effect][0 if is_alone else 1] / known
+        size = max(int(np.ceil(2 * _REACH[effect] / spacing)), _FEWEST[effect])
+        sizes.append(min(size + 1 - size % 2, _MOST_NODES))
+    return _grid(model, sizes)
 
 
 def thinned(model: OrdinalModel, parameters: Floats, counts: Counts, grid: Grid) -> Grid:
@@ -54,13 +66,17 @@ def refined_grid(
     *,
     weights: Floats | None = None,
 ) -> Grid | None:
-    """Return a finer grid where halving a direction's spacing changes the log-likelihood."""
-    value = log_likelihood(model, parameters, counts, grid, weights=weights)[0]
+    """Return a whole finer grid where halving a spacing changes the log-likelihood, else None.
+
+    Halving takes the nodes half-way only: the others are known.
+    """
+    own = person_log_likelihoods(model, parameters, counts, grid)
+    often = np.ones(len(own)) if weights is None else weights
     finer = list(grid.counts)
     for place, count in enumerate(grid.counts):
-        trial = [2 * n - 1 if i == place else n for i, n in enumerate(grid.counts)]
-        again = log_likelihood(model, parameters, counts, _grid(model, trial), weights=weights)[0]
-        if abs(again - value) > _TOLERANCE[min(len(trial) - 1, 1)]:
+        middle = person_log_likelihoods(model, parameters, counts, grid.between(place))
+        change = float(often @ (np.logaddexp(own, middle) - np.log(2.0) - own))
+        if abs(change) > _TOLERANCE[min(len(finer) - 1, 1)]:
             finer[place] = 2 * count - 1
     return _grid(model, finer) if finer != list(grid.counts) else None
 

@@ -74,17 +74,32 @@ def log_likelihood(
         often = np.ones(len(own[rows])) if weights is None else weights[rows]
         posterior, logs = posteriors(own[rows], flat, grid)
         total += float(often @ logs)
-        expected += own[rows].T @ (posterior * often[:, None])
+        if weights is not None:
+            posterior *= often[:, None]
+        expected += own[rows].T @ posterior
     return total, _gradient(model, parameters, at, expected.reshape(at.log_p.shape))
+
+
+def person_log_likelihoods(
+    model: OrdinalModel, parameters: Floats, counts: Counts, grid: Grid
+) -> Floats:
+    """Return each person's log-likelihood (n_people,)."""
+    flat = cells(model, parameters, grid).log_p.reshape(-1, grid.log_weights.size)
+    own = counts.table.reshape(counts.people, -1)
+    found = [posteriors(own[rows], flat, grid)[1] for rows in _blocks(len(own), flat.shape[1])]
+    return np.concatenate(found)
 
 
 def posteriors(table: Floats, flat_log_p: Floats, grid: Grid) -> tuple[Floats, Floats]:
     """Return each person's probabilities of the nodes (n_people, Q) and log-likelihood."""
-    joint = table @ flat_log_p + grid.log_weights
+    joint = table @ flat_log_p
+    joint += grid.log_weights
     top = joint.max(axis=1, keepdims=True)
-    share = np.exp(joint - top)
+    joint -= top
+    share = np.exp(joint, out=joint)
     norm = share.sum(axis=1, keepdims=True)
-    return share / norm, (top + np.log(norm))[:, 0]
+    share /= norm
+    return share, (top + np.log(norm))[:, 0]
 
 
 def visited(model: OrdinalModel, parameters: Floats, counts: Counts, grid: Grid) -> Floats:
@@ -105,9 +120,8 @@ def _blocks(people: int, nodes: int) -> Iterator[slice]:
 def _gradient(model: OrdinalModel, parameters: Floats, at: Cells, expected: Floats) -> Floats:
     """Chain the expected counts back to the parameters."""
     log_pdf = model.link.log_pdf(at.bounds)
-    lower = expected[:, :-1] * np.exp(log_pdf - at.log_p[:, :-1])
-    upper = expected[:, 1:] * np.exp(log_pdf - at.log_p[:, 1:])
-    by_bound = lower - upper  # d ll / d bounds (S, K-1, Q)
+    by_bound = expected[:, :-1] * np.exp(log_pdf - at.log_p[:, :-1])
+    by_bound -= expected[:, 1:] * np.exp(log_pdf - at.log_p[:, 1:])  # d ll / d bounds (S, K-1, Q)
     by_cut = by_bound * at.shrink
     by_eta = -by_cut.sum(axis=(1, 2))
     by_noise = -(by_bound * at.bounds).sum(axis=1)  # (S, Q)

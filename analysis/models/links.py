@@ -35,12 +35,15 @@ class Link:
         ``bounds`` (n, K - 1, q) gives (n, K, q). Where an interval lies above zero it is mirrored
         into the lower tail: there F keeps its relative accuracy.
         """
-        below, above = self.cdf(bounds), self.cdf(-bounds)
-        end = np.zeros_like(bounds[:, :1])
-        lower = np.diff(below, axis=1, prepend=end, append=end + 1.0)
-        upper = -np.diff(above, axis=1, prepend=end + 1.0, append=end)
-        is_upper = np.concatenate([bounds[:, :1] * 0 > 0, bounds > 0], axis=1)
-        share = np.where(is_upper, upper, lower)
+        is_upper = bounds > 0
+        tail = self.cdf(-np.abs(bounds))  # the costly part, hence once
+        below, above = np.where(is_upper, 1.0 - tail, tail), np.where(is_upper, tail, 1.0 - tail)
+        count = bounds.shape[1] + 1
+        share = np.empty((len(bounds), count, bounds.shape[2]))
+        share[:, 0], share[:, -1] = below[:, 0], above[:, -1]
+        share[:, 1:-1] = np.where(
+            is_upper[:, :-1], above[:, :-1] - above[:, 1:], below[:, 1:] - below[:, :-1]
+        )
         far = np.nonzero(share < _TINY)
         share[far] = 1.0
         logs = np.log(share)

@@ -8,7 +8,7 @@ Gauss-Hermite nodes they do not thin out where one person's many answers put the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Final
 
@@ -21,15 +21,30 @@ REACH: Final = 5.5  # standard deviations to either side; outside lie 4e-8 of a 
 
 @dataclass(frozen=True)
 class Grid:
-    """Nodes (n_effects, Q) in units of each effect's standard deviation, and log weights (Q,)."""
+    """Nodes (n_effects, Q) in units of each effect's standard deviation, and log weights (Q,).
+
+    ``counts`` are the nodes in each direction and ``reaches`` how far they go.
+    """
 
     nodes: Floats
     log_weights: Floats
     counts: tuple[int, ...]
+    reaches: tuple[float, ...] = ()
 
     def only(self, kept: NDArray[np.bool_]) -> Grid:
         """Return the grid without the nodes where ``kept`` (Q,) is False; weights stay."""
-        return Grid(self.nodes[:, kept], self.log_weights[kept], self.counts)
+        return replace(self, nodes=self.nodes[:, kept], log_weights=self.log_weights[kept])
+
+    def between(self, direction: int) -> Grid:
+        """Return the nodes half a spacing further in one direction: the mean of a sum over these
+        and of one over the grid's own is a sum over nodes half as far apart.
+        """
+        count, reach = self.counts[direction], self.reaches[direction]
+        half = reach / (count - 1) if count > 1 else 0.5
+        nodes = self.nodes.copy()
+        nodes[direction] += half
+        logs = (self.nodes[direction] ** 2 - nodes[direction] ** 2) / 2
+        return replace(self, nodes=nodes, log_weights=self.log_weights + logs)
 
 
 def normal_grid(counts: Sequence[int], *, reach: Sequence[float] | None = None) -> Grid:
@@ -43,7 +58,9 @@ def normal_grid(counts: Sequence[int], *, reach: Sequence[float] | None = None) 
     axes = [_axis(count, end) for count, end in zip(counts, ends, strict=True)]
     nodes = np.meshgrid(*(axis[0] for axis in axes), indexing="ij")
     logs: Floats = reduce(np.add.outer, (axis[1] for axis in axes), np.zeros(()))
-    return Grid(np.array([node.ravel() for node in nodes]), logs.ravel(), tuple(counts))
+    return Grid(
+        np.array([node.ravel() for node in nodes]), logs.ravel(), tuple(counts), tuple(ends)
+    )
 
 
 def _axis(count: int, reach: float) -> tuple[Floats, Floats]:

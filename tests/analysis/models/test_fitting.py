@@ -13,6 +13,7 @@ from statsmodels.miscmodels.ordinal_model import OrderedModel
 
 from analysis.models.counts import Counts, count_answers
 from analysis.models.fitting import fit
+from analysis.models.likelihood import log_likelihood
 from analysis.models.links import LOGIT, PROBIT, Link
 from analysis.models.ordinal import LENIENCY, PERSON_EFFECTS, OrdinalModel
 from analysis.models.predictors import Linear
@@ -193,3 +194,28 @@ def test_a_table_of_a_bootstrap_is_that_of_repeated_people() -> None:
     second = fit(model, repeated, priors=PRIORS, grid=first.grid)
     assert first.parameters == pytest.approx(second.parameters, abs=1e-5)
     assert pd.Series(first.model.names).is_unique
+
+
+def test_a_grid_in_three_directions_is_as_fine_as_it_must_be() -> None:
+    rng = np.random.default_rng(21)
+    model, counts, _ = rated(rng, people=15, each=60, sds=(0.6, 0.25, 0.3))
+    full = OrdinalModel(model.predictor, effects=PERSON_EFFECTS)
+    found = fit(full, counts, priors=PRIORS)
+    finer = normal_grid([101, 41, 41], reach=[5.5, 4.0, 4.0])
+    exact = log_likelihood(full, found.parameters, counts, finer)[0]
+    assert found.log_likelihood == pytest.approx(exact, abs=0.05)
+    assert found.grid.log_weights.size < 3000  # of the finer one's 169 781
+
+
+def test_steps_from_a_fit_nearby_lead_to_the_same_place() -> None:
+    rng = np.random.default_rng(22)
+    model, counts, _ = rated(rng, people=12, each=40, sds=(0.5, 0.0, 0.0))
+    whole = fit(model, counts, priors=PRIORS)
+    without_first = np.array([0.0, *[1.0] * 11])
+    near = fit(model, counts, priors=PRIORS, weights=without_first, near=whole)
+    anew = fit(model, counts, priors=PRIORS, weights=without_first)
+    assert near.parameters == pytest.approx(anew.parameters, abs=2e-4)
+    assert np.diag(near.covariance) == pytest.approx(np.diag(anew.covariance), rel=2e-3)
+    assert np.abs(near.parameters - whole.parameters).max() > 0.02  # so there was a way to go
+    with pytest.raises(ValueError, match="near: a fit of "):
+        fit(OrdinalModel(model.predictor, effects=()), counts, near=whole)

@@ -35,3 +35,14 @@ def test_directions_are_independent() -> None:
 def test_no_node_is_refused() -> None:
     with pytest.raises(ValueError, match="at least one node in each direction; found 0"):
         normal_grid([5, 0])
+
+
+def test_nodes_between_make_a_sum_over_nodes_half_as_far_apart() -> None:
+    coarse, fine = normal_grid([15]), normal_grid([29])
+    between = coarse.between(0)
+    halves = [np.exp(g.log_weights) @ ndtr(0.7 + 1.3 * g.nodes[0]) for g in (coarse, between)]
+    assert np.mean(halves) == pytest.approx(
+        np.exp(fine.log_weights) @ ndtr(0.7 + 1.3 * fine.nodes[0]), abs=1e-7
+    )
+    first = normal_grid([9, 5]).between(1)
+    assert first.nodes[0] == pytest.approx(normal_grid([9, 5]).nodes[0])
