@@ -36,11 +36,14 @@ class ReportTable:
     is_prose: bool = False
 
 
-def report_tables(tables: Tables, costs: Costs | None = None) -> list[ReportTable]:
-    """Return the tables of the report in order; those without rows are left out."""
+def rating_tables(tables: Tables, costs: Costs | None = None) -> list[ReportTable]:
+    """Return the tables of ratings in order; those without rows are left out."""
+    return [table for table in (_means(tables, costs), _correlations(tables)) if table.rows]
+
+
+def comparison_tables(tables: Tables) -> list[ReportTable]:
+    """Return the tables of preferences and of noticing; those without rows are left out."""
     made = [
-        _means(tables, costs),
-        _correlations(tables),
         _pairs(
             pair_comparison_shares(tables.comparisons),
             PAIR_OUTCOMES,

@@ -18,6 +18,9 @@ from analysis.descriptive import CONFIDENCE
 from analysis.ordering import in_order
 from analysis.table import NOTICED, STANDARD_LODS
 
+MOST_CLIPS: Final = 24
+"""More clips than these are told by pairing: what a page can show, and a reader take in."""
+
 LEFT_BETTER: Final = "left"
 NO_DIFFERENCE: Final = "none"
 RIGHT_BETTER: Final = "right"
@@ -77,6 +80,24 @@ def pair_notice_shares(comparisons: pd.DataFrame) -> pd.DataFrame:
     return _shares(rows.assign(answer=rows["noticed"]), _PAIR, NOTICED)
 
 
+def clips_or_pairings(rows: pd.DataFrame, *, most: int = MOST_CLIPS) -> pd.DataFrame:
+    """Return ratings or comparisons with pairings in place of clips where there are many clips.
+
+    A pairing is the LoD on the left and the LoD on the right; clips that differ in size or
+    direction alone are taken together. Rows that tell of no pairing keep their clip.
+    """
+    if rows.loc[~rows["is_practice"], ["distance", "clip"]].drop_duplicates().shape[0] <= most:
+        return rows
+    if "left_lod" in rows:
+        left, right = rows["left_lod"], rows["right_lod"]
+    else:
+        is_left = (rows["eye"] == "left").fillna(False).astype(bool)
+        other = rows["other_lod"].where(rows["eye"].notna())
+        left, right = rows["lod"].where(is_left, other), other.where(is_left, rows["lod"])
+    return rows.assign(clip=(left + PAIRED + right).fillna(rows["clip"]))
+
+
+PAIRED: Final = " – "
 _CLIP: Final = ("distance", "clip", "left_lod", "right_lod")
 _PAIR: Final = ("distance", "lesser", "greater")
 

@@ -1,120 +1,150 @@
-"""The catalogue of charts: what each is called, what its caption says, the numbers behind it.
+"""The catalogue of charts: what each is called, where it stands, the numbers behind it.
 
-The report and the dashboard draw from this one list.
+The report and the dashboard draw from this one list, in this order.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal, TypeVar
 
 import pandas as pd
 from matplotlib.figure import Figure
 
 from analysis import shares
-from analysis.charts import cells, share_bars, trends
-from analysis.charts.clips import realism_per_clip
+from analysis.charts import (
+    cells,
+    clips,
+    course,
+    curves,
+    decision,
+    forest,
+    heat,
+    pareto,
+    people,
+    scales,
+    share_bars,
+    spread,
+    trends,
+)
+from analysis.charts.captions import CAPTIONS
+from analysis.charts.material import Material
 from analysis.correlation import rank_correlations
+from analysis.curves.curve import NOTICED, PREFERRED, RATED
 from analysis.descriptive import mean_ratings, rating_counts
 from analysis.reading import Tables
+
+Part = Literal["answer", "verdicts", "sizes", "ratings", "comparisons", "people"]
+"""Where a chart stands in the report: beside the answer, or in one of the sections after it."""
+
+Draw = Callable[[Material], Figure]
+Tell = Callable[[Material], pd.DataFrame]
+_Made = TypeVar("_Made")
 
 
 @dataclass(frozen=True)
 class Chart:
-    """One chart: its file's name, its caption, its drawing and the table behind it."""
+    """One chart: its file's name, where it stands, what it is called, its drawing, its table.
+
+    ``draw`` and ``table`` take the same material, so that what is written is what is drawn.
+    """
 
     name: str
-    caption: str
-    draw: Callable[[Tables], Figure]
-    table: Callable[[Tables], pd.DataFrame]
+    part: Part
+    title: str
+    draw: Draw
+    table: Tell
+
+    @property
+    def caption(self) -> str:
+        """What a reader needs to understand the chart."""
+        return CAPTIONS[self.name]
 
 
-_INTERVAL: Final = (
-    "The scale runs from completely unrealistic to almost or completely photorealistic. Symbols "
-    "are means over people, vertical lines 95 % t intervals."
-)
+def _tables(make: Callable[[Tables], _Made]) -> Callable[[Material], _Made]:
+    """Let a function of the tables alone take the material."""
+    return lambda material: make(material.tables)
+
+
+def _curves(kind: str) -> Chart:
+    """Return the chart of one kind of curve along the iris's size."""
+    return Chart(
+        f"{kind}-by-size",
+        "sizes",
+        curves.title(kind),
+        lambda m: curves.curves_along_sizes(m, kind),
+        lambda m: curves.curves_table(m, kind),
+    )
+
 
 CHARTS: Final = (
     Chart(
-        "realism-per-clip",
-        "Perceived realism of each eye in each clip, grouped by viewing distance and coloured by "
-        f"level of detail (LoD). {_INTERVAL} Dots are single people (in larger studies "
-        "the area of a dot is their share), n is their number. Left and right are the viewer's. "
-        "(The thesis's Figure 5.2, with its uncertainty.)",
-        realism_per_clip,
-        lambda t: mean_ratings(t.ratings, ["distance", "clip", "eye", "lod"]),
+        "decision-chart",
+        "answer",
+        decision.TITLE,
+        decision.decision_chart,
+        decision.decision_cells,
     ),
-    Chart(
-        "perceived-against-actual",
-        f"Perceived realism against the actual LoD at each distance. {_INTERVAL} Grey lines are "
-        "single people (where they are at most 100). τ is Kendall's tau-b within people, averaged "
-        "on Fisher's z scale, with its 95 % interval; people whose ratings are all alike have "
-        "none.",
-        trends.perceived_against_actual,
-        lambda t: rank_correlations(t.ratings),
-    ),
-    Chart(
-        "realism-by-distance",
-        f"Perceived realism by viewing distance for each LoD. {_INTERVAL} Lines join neighbouring "
-        "distances at which a LoD was shown.",
-        trends.realism_by_distance,
-        lambda t: mean_ratings(t.ratings, ["distance", "lod"]),
-    ),
-    Chart(
-        "comparisons-per-pair",
-        "Which LoD of a pair was called more realistic, whichever side it stood on. The share next "
-        "to a name preferred it. Lines are 95 % Wilson intervals: above the bar for the LoD on the "
-        "left, below it for the LoD on the right.",
-        share_bars.comparisons_per_pair,
-        lambda t: shares.pair_comparison_shares(t.comparisons),
-    ),
-    Chart(
-        "noticed-per-pair",
-        "Whether anything missing or different was noticed between the eyes, by pair of LoDs. "
-        "Lines are 95 % Wilson intervals of yes. For equal LoDs, yes is a false alarm.",
-        share_bars.noticed_per_pair,
-        lambda t: shares.pair_notice_shares(t.comparisons),
-    ),
-    Chart(
-        "rating-distribution",
-        "How often each rating was given, by distance and LoD; bars are centred on the middle of "
-        "the scale, n counts ratings.",
-        cells.rating_distribution,
-        lambda t: rating_counts(t.ratings, ["distance", "lod"], scale=t.scale),
-    ),
-    Chart(
-        "realism-matrix",
-        "What was shown: mean realism of each combination of LoD and distance, with the number of "
-        "people (n) and of ratings. Nothing is known about hatched combinations.",
-        cells.realism_matrix,
-        lambda t: mean_ratings(t.ratings, ["lod", "distance"]),
-    ),
-    Chart(
-        "comparisons-per-clip",
-        "Which eye was called more realistic in each clip, as the viewer saw it. Lines are 95 % "
-        "Wilson intervals: above the bar for the left eye, below it for the right eye.",
-        share_bars.comparisons_per_clip,
-        lambda t: shares.comparison_shares(t.comparisons),
-    ),
-    Chart(
-        "noticed-per-clip",
-        "Whether anything missing or different was noticed between the eyes, clip by clip. Lines "
-        "are 95 % Wilson intervals of yes.",
-        share_bars.noticed_per_clip,
-        lambda t: shares.notice_shares(t.comparisons),
-    ),
-)
+    Chart("contrasts", "verdicts", forest.TITLE, forest.contrasts_against_margins,
+          forest.contrasts),
+    Chart("latent-realism", "verdicts", scales.LATENT, scales.latent_realism,
+          scales.latent_table),
+    Chart("realism-against-cost", "verdicts", pareto.TITLE, pareto.realism_against_cost,
+          pareto.points_table),
+    _curves(NOTICED),
+    _curves(PREFERRED),
+    _curves(RATED),
+    Chart("realism-per-clip", "ratings", clips.TITLE, _tables(clips.realism_per_clip),
+          _tables(clips.eye_means)),
+    Chart("realism-matrix", "ratings", cells.MATRIX, _tables(cells.realism_matrix),
+          _tables(lambda t: mean_ratings(t.ratings, ["lod", "distance"]))),
+    Chart("rating-distribution", "ratings", cells.DISTRIBUTION,
+          _tables(cells.rating_distribution),
+          _tables(lambda t: rating_counts(t.ratings, ["distance", "lod"], scale=t.scale))),
+    Chart("perceived-against-actual", "ratings", trends.AGAINST_LOD,
+          _tables(trends.perceived_against_actual),
+          _tables(lambda t: rank_correlations(t.ratings))),
+    Chart("realism-by-distance", "ratings", trends.BY_DISTANCE,
+          _tables(trends.realism_by_distance),
+          _tables(lambda t: mean_ratings(t.ratings, ["distance", "lod"]))),
+    Chart("comparisons-per-pair", "comparisons", share_bars.PAIR_COMPARED,
+          _tables(share_bars.comparisons_per_pair),
+          _tables(lambda t: shares.pair_comparison_shares(t.comparisons))),
+    Chart("preference", "comparisons", scales.PREFERENCE, scales.preference_scale,
+          scales.preference_table),
+    Chart("noticed-per-pair", "comparisons", share_bars.PAIR_NOTICED,
+          _tables(share_bars.noticed_per_pair),
+          _tables(lambda t: shares.pair_notice_shares(t.comparisons))),
+    Chart("detection", "comparisons", scales.DETECTION, scales.detection,
+          scales.detection_table),
+    Chart("comparisons-per-clip", "comparisons", share_bars.CLIP_COMPARED,
+          _tables(share_bars.comparisons_per_clip),
+          _tables(lambda t: shares.comparison_shares(shares.clips_or_pairings(t.comparisons)))),
+    Chart("noticed-per-clip", "comparisons", share_bars.CLIP_NOTICED,
+          _tables(share_bars.noticed_per_clip),
+          _tables(lambda t: shares.notice_shares(shares.clips_or_pairings(t.comparisons)))),
+    Chart("observers", "people", people.OBSERVERS, people.observers, people.observers_table),
+    Chart("ratings-per-person", "people", heat.HEAT_MAP, heat.ratings_heat_map,
+          heat.heat_table),
+    Chart("verdict-stability", "people", people.STABILITY, people.verdict_stability,
+          people.stability_table),
+    Chart("session-course", "people", course.COURSE, course.over_the_session,
+          course.course_table),
+    Chart("rating-spread", "people", spread.SPREAD, spread.spread_of_ratings,
+          spread.spread_table),
+)  # fmt: skip
 
 
-def figures(tables: Tables, names: Iterable[str] | None = None) -> dict[str, Figure]:
+def figures(source: Tables | Material, names: Iterable[str] | None = None) -> dict[str, Figure]:
     """Draw the charts by name, all of them unless some are named.
 
     Raises ValueError for a name that is no chart, with those that are.
     """
+    material = Material(source) if isinstance(source, Tables) else source
     by_name = {chart.name: chart for chart in CHARTS}
     wanted = list(by_name if names is None else names)
     unknown = [name for name in wanted if name not in by_name]
     if unknown:
         raise ValueError(f'unknown chart "{unknown[0]}"; choose one of {", ".join(by_name)}')
-    return {name: by_name[name].draw(tables) for name in wanted}
+    return {name: by_name[name].draw(material) for name in wanted}

@@ -20,6 +20,7 @@ from analysis.charts.style import (
     INK,
     NO_RATINGS,
     NORMAL,
+    PAGE_WIDTH_IN,
     QUIET,
     SMALL,
     message_figure,
@@ -46,7 +47,7 @@ def rating_distribution(tables: Tables) -> Figure:
     distances = [str(d) for d in counts["distance"]]
     places = grouped_places(distances)
     figure = new_figure(
-        7.0, 1.5 + 0.33 * places[-1], DISTRIBUTION, is_simulated=tables.is_simulated
+        PAGE_WIDTH_IN, 1.5 + 0.33 * places[-1], DISTRIBUTION, is_simulated=tables.is_simulated
     )
     axes = figure.subplots()
     tidy(axes, grid="x")
@@ -109,7 +110,7 @@ def realism_matrix(tables: Tables) -> Figure:
     counted = tables.ratings[~tables.ratings["is_practice"]]
     shown = set(zip(counted["lod"], counted["distance"], strict=True))
     figure = new_figure(
-        1.9 + 1.3 * max(3, len(distances)),
+        min(PAGE_WIDTH_IN, 1.9 + 1.3 * max(3, len(distances))),
         1.25 + 0.55 * len(lods),
         MATRIX,
         is_simulated=tables.is_simulated,

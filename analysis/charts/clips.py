@@ -14,11 +14,19 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
-from analysis.charts.parts import clip_label, distance_label, draw_mean, lod_legend, records
+from analysis.charts.parts import (
+    clip_label,
+    distance_label,
+    draw_mean,
+    lod_legend,
+    records,
+    upright_in,
+)
 from analysis.charts.style import (
     INK,
     NO_RATINGS,
     NORMAL,
+    PAGE_WIDTH_IN,
     QUIET,
     SMALL,
     beeswarm,
@@ -31,27 +39,39 @@ from analysis.charts.style import (
 from analysis.descriptive import mean_ratings, person_means
 from analysis.ordering import lod_order
 from analysis.reading import Tables
+from analysis.shares import PAIRED, clips_or_pairings
 
 TITLE: Final = "Perceived realism of each eye, per clip"
 _CLIPS_PER_ROW: Final = 10
-_SLOT_IN: Final = 0.6  # width of one eye's column
+_SLOT_IN: Final = 0.6  # width of one eye's column where there is room
+_UPRIGHT_IN: Final = 0.5  # below this width names of columns stand upright
+_ROW_IN: Final = 2.9
+_MOST_IN: Final = 8.2  # all rows together: a page with its caption
 _GAP: Final = 0.5  # between clips, in columns
 _MOST_DOTS: Final = 80  # with more people the area of one dot per rating shows their share
 _KEYS: Final = ["distance", "clip", "eye", "lod"]
 
 
+def eye_means(tables: Tables) -> pd.DataFrame:
+    """Return the mean rating of each eye of each clip (or pairing, where there are many clips)."""
+    return mean_ratings(clips_or_pairings(tables.ratings), _KEYS)
+
+
 def realism_per_clip(tables: Tables) -> Figure:
     """Draw mean realism per clip and eye, grouped by distance, coloured by LoD."""
-    means = mean_ratings(tables.ratings, _KEYS)
+    means = eye_means(tables)
     if means.empty:
         return message_figure(TITLE, NO_RATINGS, is_simulated=tables.is_simulated)
-    people = person_means(tables.ratings, _KEYS)
+    people = person_means(clips_or_pairings(tables.ratings), _KEYS)
     lods = lod_order(tables.ratings)
     rows = _rows_of_panels(means)
     widest = max(sum(_columns(panel) for panel in row) for row in rows)
+    width = min(PAGE_WIDTH_IN, max(5.5, 0.9 + _SLOT_IN * widest))
+    is_narrow = (width - 0.9) / widest < _UPRIGHT_IN
     figure = new_figure(
-        max(6.5, 0.9 + _SLOT_IN * widest),
-        1.0 + 2.9 * len(rows),
+        width,
+        1.0
+        + min(_ROW_IN + (upright_in(lods) if is_narrow else 0.0), _MOST_IN / len(rows)) * len(rows),
         TITLE,
         is_simulated=tables.is_simulated,
     )
@@ -61,7 +81,7 @@ def realism_per_clip(tables: Tables) -> Figure:
         widths = [_columns(panel) for panel in row] + ([spare] if spare > 0.5 else [])
         panels = band.subplots(1, len(widths), squeeze=False, sharey=True, width_ratios=widths)[0]
         for place, (axes, panel) in enumerate(zip(panels, row, strict=False)):
-            _draw_clips(axes, panel, people, lods)
+            _draw_clips(axes, panel, people, lods, is_narrow=is_narrow)
             rating_axis(axes, tables.scale, is_labelled=place == 0)
             axes.set_title(
                 distance_label(str(panel["distance"].iloc[0]), tables), fontsize=NORMAL, color=INK
@@ -95,7 +115,14 @@ def _rows_of_panels(means: pd.DataFrame) -> list[list[pd.DataFrame]]:
     return rows
 
 
-def _draw_clips(axes: Axes, panel: pd.DataFrame, people: pd.DataFrame, lods: Sequence[str]) -> None:
+def _draw_clips(
+    axes: Axes,
+    panel: pd.DataFrame,
+    people: pd.DataFrame,
+    lods: Sequence[str],
+    *,
+    is_narrow: bool,
+) -> None:
     tidy(axes)
     places: list[float] = []
     names: list[str] = []
@@ -103,12 +130,15 @@ def _draw_clips(axes: Axes, panel: pd.DataFrame, people: pd.DataFrame, lods: Seq
     for clip, own in panel.groupby("clip", sort=False):
         for offset, row in enumerate(records(own)):
             _draw_eye(axes, x + offset, row, _ratings_of(row, people), lods)
+            count = f"{row['people']}" if is_narrow and places else f"n = {row['people']}"
+            _write_count(axes, x + offset, count, is_first=is_narrow and not places)
             places.append(x + offset)
-            names.append(row["lod"] if pd.isna(row["eye"]) else f"{row['eye']}\n{row['lod']}")
-        if own["eye"].notna().any():
-            _name_clip(axes, x + (len(own) - 1) / 2, clip_label(str(clip)))
+            joint = " " if is_narrow else "\n"
+            names.append(row["lod"] if pd.isna(row["eye"]) else f"{row['eye']}{joint}{row['lod']}")
+        if own["eye"].notna().any() and PAIRED not in str(clip):
+            _name_clip(axes, x + (len(own) - 1) / 2, clip_label(str(clip)), is_narrow=is_narrow)
         x += len(own) + _GAP
-    axes.set_xticks(places, names)
+    axes.set_xticks(places, names, rotation=90 if is_narrow else 0)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.65, x - _GAP - 0.35)
 
@@ -134,25 +164,29 @@ def _draw_eye(
         axes.scatter(np.full(values.size, x), values, s=size, color=colour, alpha=0.35,
                      linewidths=0, zorder=2)  # fmt: skip
     draw_mean(axes, x, row, lods=lods)
+
+
+def _write_count(axes: Axes, x: float, text: str, *, is_first: bool) -> None:
+    """Write n above a column; in narrow ones only the first says that it is n."""
     axes.annotate(
-        f"n = {row['people']}",
+        text,
         (x, 1),
         xycoords=("data", "axes fraction"),
-        xytext=(0, -1),
+        xytext=(4 if is_first else 0, -1),
         textcoords="offset points",
-        ha="center",
+        ha="right" if is_first else "center",
         va="top",
         fontsize=6.5,
         color=QUIET,
     )
 
 
-def _name_clip(axes: Axes, x: float, name: str) -> None:
+def _name_clip(axes: Axes, x: float, name: str, *, is_narrow: bool) -> None:
     axes.annotate(
-        textwrap.fill(name, 20),
+        textwrap.fill(name, 12 if is_narrow else 20),
         (x, 0),
         xycoords=("data", "axes fraction"),
-        xytext=(0, -29),
+        xytext=(0, -62 if is_narrow else -29),
         textcoords="offset points",
         ha="center",
         va="top",

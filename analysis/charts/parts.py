@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -74,6 +75,11 @@ def lod_legend(
         )
 
 
+def upright_in(names: Sequence[str]) -> float:
+    """Return about how many inches names take that stand upright below an axis."""
+    return 0.065 * max((len(name) for name in names), default=0)
+
+
 def grouped_places(groups: Sequence[str]) -> list[float]:
     """Return one place per row, from 1, with a gap wherever the group changes."""
     places: list[float] = []
@@ -125,3 +131,13 @@ def readable_on(colour: str) -> str:
     """Return dark or white, whichever is legible on a colour given as #rrggbb."""
     red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
     return INK if 0.3 * red + 0.59 * green + 0.11 * blue > 140 else "white"
+
+
+def head_columns(axes: Axes, distances: Sequence[str]) -> None:
+    """Write each distance over its columns and part them by a line."""
+    for distance in dict.fromkeys(distances):
+        own = [i for i, name in enumerate(distances) if name == distance]
+        axes.text(float(np.mean(own)), -0.75, distance, ha="center", va="bottom", fontsize=SMALL,
+                  fontweight="bold", color=INK)  # fmt: skip
+        if own[0]:
+            axes.axvline(own[0] - 0.5, color="white", linewidth=3)

@@ -22,6 +22,7 @@ from analysis.charts.style import (
     CHOICE_COLOURS,
     INK,
     NOTICE_COLOURS,
+    PAGE_WIDTH_IN,
     SMALL,
     message_figure,
     new_figure,
@@ -31,6 +32,8 @@ from analysis.reading import Tables
 from analysis.shares import (
     OUTCOMES,
     PAIR_OUTCOMES,
+    PAIRED,
+    clips_or_pairings,
     comparison_shares,
     notice_shares,
     pair_comparison_shares,
@@ -38,6 +41,12 @@ from analysis.shares import (
 )
 from analysis.table import NOTICED
 
+CLIP_COMPARED: Final = "Which eye is more realistic, per clip"
+PAIR_COMPARED: Final = "Which LoD is more realistic, per pair"
+CLIP_NOTICED: Final = "Difference noticed, per clip"
+PAIR_NOTICED: Final = "Difference noticed, per pair"
+_ROW_IN: Final = 0.36
+_MOST_IN: Final = 7.4  # all rows together: a page with its caption
 NO_COMPARISONS: Final = "No comparison of the two eyes has been answered yet."
 NO_NOTICES: Final = "Whether a difference was noticed has not been answered yet."
 
@@ -56,20 +65,20 @@ class _Look:
 def comparisons_per_clip(tables: Tables) -> Figure:
     """Draw, per clip, how many called the left eye, neither, or the right eye more realistic."""
     look = _Look(
-        "Which eye is more realistic, per clip",
+        CLIP_COMPARED,
         OUTCOMES,
         ("left eye", "no difference noticed", "right eye"),
         CHOICE_COLOURS,
         True,
     )
-    shares = comparison_shares(tables.comparisons)
+    shares = comparison_shares(clips_or_pairings(tables.comparisons))
     return _draw(shares, tables, look, ("left_lod", "right_lod"), NO_COMPARISONS)
 
 
 def comparisons_per_pair(tables: Tables) -> Figure:
     """Draw, per pair of LoDs, how many called the lesser, neither or the greater more real."""
     look = _Look(
-        "Which LoD is more realistic, per pair",
+        PAIR_COMPARED,
         PAIR_OUTCOMES,
         ("lesser LoD", "no difference noticed", "greater LoD"),
         CHOICE_COLOURS,
@@ -81,14 +90,14 @@ def comparisons_per_pair(tables: Tables) -> Figure:
 
 def noticed_per_clip(tables: Tables) -> Figure:
     """Draw, per clip, how many noticed anything missing or different between the eyes."""
-    look = _Look("Difference noticed, per clip", NOTICED, _NOTICE_NAMES, NOTICE_COLOURS, False)
-    shares = notice_shares(tables.comparisons)
+    look = _Look(CLIP_NOTICED, NOTICED, _NOTICE_NAMES, NOTICE_COLOURS, False)
+    shares = notice_shares(clips_or_pairings(tables.comparisons))
     return _draw(shares, tables, look, ("left_lod", "right_lod"), NO_NOTICES)
 
 
 def noticed_per_pair(tables: Tables) -> Figure:
     """Draw, per pair of LoDs, how many noticed a difference; equal LoDs show false alarms."""
-    look = _Look("Difference noticed, per pair", NOTICED, _NOTICE_NAMES, NOTICE_COLOURS, False)
+    look = _Look(PAIR_NOTICED, NOTICED, _NOTICE_NAMES, NOTICE_COLOURS, False)
     shares = pair_notice_shares(tables.comparisons)
     return _draw(shares, tables, look, ("lesser", "greater"), NO_NOTICES)
 
@@ -106,7 +115,10 @@ def _draw(
     first = [records(own)[0] for own in rows]
     distances = [str(row["distance"]) for row in first]
     places = grouped_places(distances)
-    figure = new_figure(7.0, 1.45 + 0.36 * places[-1], look.title, is_simulated=tables.is_simulated)
+    row_in = min(_ROW_IN, _MOST_IN / places[-1])
+    figure = new_figure(
+        PAGE_WIDTH_IN, 1.45 + row_in * places[-1], look.title, is_simulated=tables.is_simulated
+    )
     axes = figure.subplots()
     tidy(axes, grid="x")
     for y, own in zip(places, rows, strict=True):
@@ -134,7 +146,8 @@ def _draw(
 
 def _names(row: Mapping[str, Any], sides: tuple[str, str], look: _Look) -> tuple[str, str]:
     left, right = str(row[sides[0]]), str(row[sides[1]])
-    clip = f"{clip_label(str(row['clip']))}:  " if "clip" in row else ""
+    has_clip = "clip" in row and PAIRED not in str(row["clip"])
+    clip = f"{clip_label(str(row['clip']))}:  " if has_clip else ""
     count = f"n = {row['total']}"
     if look.is_two_sided:
         return f"{clip}{left}", f"{right}   ({count})"

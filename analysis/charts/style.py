@@ -31,7 +31,13 @@ _OTHER_MARKERS: Final = ("v", "P", "X", "<", ">", "h")
 
 CHOICE_COLOURS: Final = ("#7570B3", "#E2E2E2", "#1B9E77")
 NOTICE_COLOURS: Final = ("#1F3A5F", "#9DB4CE", "#E8E8E8")
+# By the names of analysis.decision.verdicts; markers differ too.
+VERDICT_COLOURS: Final = {"equivalent": "#0072B2", "different": "#D55E00", "not shown": "#7a7a7a"}
+VERDICT_MARKERS: Final = {"equivalent": "o", "different": "D", "not shown": "s"}
 _SCALE_COLOURS: Final = ("#B35806", "#F1A340", "#EDEDED", "#A79FCC", "#542788")
+
+# What an A4 page holds between its margins; a wider figure would be printed smaller.
+PAGE_WIDTH_IN: Final = 7.0
 
 SMALL: Final = 8.0
 NORMAL: Final = 9.0
@@ -59,6 +65,11 @@ def scale_colours(steps: int) -> list[str]:
         return list(_SCALE_COLOURS)
     shades = mpl.colormaps["PuOr"](np.linspace(0.08, 0.92, steps))
     return [mpl.colors.to_hex(shade) for shade in shades]
+
+
+def shade(share: float) -> str:
+    """Return a blue for a share from 0 (nearly white) to 1, as #rrggbb."""
+    return str(mpl.colors.to_hex(mpl.colormaps["Blues"](0.03 + 0.72 * share)))
 
 
 def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: bool) -> Figure:
@@ -139,7 +150,7 @@ def figure_bytes(figure: Figure, kind: str) -> bytes:
     """Return a figure as ``png`` or ``svg``; equal figures give equal bytes."""
     if figure.get_layout_engine() is not None:
         figure.draw_without_rendering()  # lay out once for all kinds of file
-        figure.set_layout_engine("none")
+        figure.set_layout_engine(None)  # "none" would leave an engine that costs two more draws
     buffer = io.BytesIO()
     metadata: dict[str, Any] = {"Date": None} if kind == "svg" else {}
     # The salt of SVG ids is a setting of the whole process; nothing else here depends on it.

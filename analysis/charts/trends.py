@@ -14,6 +14,7 @@ from analysis.charts.style import (
     INK,
     NO_RATINGS,
     NORMAL,
+    PAGE_WIDTH_IN,
     SMALL,
     lod_colour,
     message_figure,
@@ -30,7 +31,7 @@ from analysis.wording import number
 AGAINST_LOD: Final = "Perceived against actual level of detail"
 BY_DISTANCE: Final = "Perceived realism by viewing distance"
 NO_ORDER: Final = "At no distance were two ranked LoDs rated, so there is no order to compare with."
-_PANELS_PER_ROW: Final = 4
+_PANELS_PER_ROW: Final = 3
 _MOST_LINES: Final = 100
 
 
@@ -66,21 +67,28 @@ def perceived_against_actual(tables: Tables) -> Figure:
         axes.set_xlim(-0.5, len(lods) - 0.5)
         axes.set_title(distance_label(distance, tables), fontsize=NORMAL, color=INK)
         axes.set_xlabel("actual LoD", fontsize=SMALL)
-        rating_axis(axes, tables.scale, is_labelled=number_of_panel % _PANELS_PER_ROW == 0)
+        rating_axis(
+            axes, tables.scale, is_labelled=number_of_panel % _panel_columns(len(distances)) == 0
+        )
         if distance in correlations:
             _note_correlation(axes, correlations[distance])
     return figure
 
 
 def _panels(title: str, count: int, tables: Tables) -> tuple[Figure, list[Axes]]:
-    columns = min(count, _PANELS_PER_ROW)
+    columns = _panel_columns(count)
     rows = -(-count // columns)
-    width = max(5.0, 0.9 + 2.3 * columns)
-    figure = new_figure(width, 0.8 + 2.9 * rows, title, is_simulated=tables.is_simulated)
+    width = min(PAGE_WIDTH_IN, max(5.0, 0.9 + 2.6 * columns))
+    figure = new_figure(width, 0.8 + 2.8 * rows, title, is_simulated=tables.is_simulated)
     grid = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel().tolist()
     for axes in grid[count:]:
         axes.set_visible(False)
     return figure, list(grid[:count])
+
+
+def _panel_columns(count: int) -> int:
+    """Return how many panels stand in a row: two by two for four, else at most three."""
+    return 2 if count == 4 else min(count, _PANELS_PER_ROW)
 
 
 def _note_correlation(axes: Axes, row: dict[str, Any]) -> None:
@@ -110,7 +118,10 @@ def realism_by_distance(tables: Tables) -> Figure:
     rated = answered(tables.ratings)
     distances, lods = distance_order(rated), lod_order(rated)
     figure = new_figure(
-        max(5.5, 2.4 + 1.3 * len(distances)), 3.7, BY_DISTANCE, is_simulated=tables.is_simulated
+        min(PAGE_WIDTH_IN, 2.4 + 1.3 * max(3, len(distances))),
+        3.7,
+        BY_DISTANCE,
+        is_simulated=tables.is_simulated,
     )
     axes = figure.subplots()
     tidy(axes)

@@ -59,10 +59,12 @@ def test_every_chart_is_written_as_svg_png_and_csv(published: Summary) -> None:
 def test_every_table_is_labelled_simulated(published: Summary) -> None:
     tables = [path for path in published.files if path.suffix == ".csv"]
     assert len(tables) > 15
+    # The thesis showed no equal pairs, and nobody is flagged here: these charts say so.
+    empty = {"detection.csv", "noticed-by-size.csv", "verdict-stability.csv"}
     for path in tables:
         frame = pd.read_csv(path)
         assert frame["simulated"].all(), path.name
-        assert len(frame), path.name
+        assert len(frame) or path.name in empty, path.name
 
 
 class _References(HTMLParser):
@@ -105,7 +107,8 @@ def test_the_report_opens_with_the_answer_and_says_simulated(
 ) -> None:
     text = published.report.read_text(encoding="utf-8")
     headings = re.findall(r"<h2>(.*?)</h2>", text)
-    assert headings[:3] == ["Answer", "What the means say", "What cannot be said"]
+    assert headings[:3] == ["Answer", "Design", "What cannot be concluded"]
+    assert text.index('<figure id="decision-chart">') < text.index("<h2>Design</h2>")
     assert text.index("SIMULATED DATA: these answers") < text.index("<h2>Answer")
     assert [distance for distance, _ in published.verdicts] == ["macroscopic", "near", "far"]
     for distance, sentence in published.verdicts:

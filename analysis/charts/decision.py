@@ -1,0 +1,116 @@
+"""The decision chart: which LoD is the cheapest that is enough, at each distance.
+
+Shade and number are how sure that is; the word is the verdict by margins; a frame marks the answer.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from analysis.charts.forest import NO_VERDICT
+from analysis.charts.material import Material
+from analysis.charts.parts import distance_label, readable_on, records
+from analysis.charts.style import (
+    INK,
+    NORMAL,
+    PAGE_WIDTH_IN,
+    QUIET,
+    SMALL,
+    message_figure,
+    new_figure,
+    shade,
+    tidy,
+)
+from analysis.decision.verdicts import NOT_SHOWN
+from analysis.ordering import distance_order, lod_order
+from analysis.wording import milliseconds, percent
+
+TITLE: Final = "Which LoD is enough, and how sure that is"
+REFERENCE: Final = "reference"
+_COLUMNS: Final = ("distance", "lod", "verdict", "is_tested", "share_cheapest", "chosen", "ms")
+_ROW_IN: Final = 0.62
+
+
+def decision_cells(material: Material) -> pd.DataFrame:
+    """Return one row per distance and LoD that takes part in a decision, the highest too.
+
+    Columns: distance, lod, verdict (``REFERENCE`` for the highest LoD), is_tested, share_cheapest,
+    chosen, ms (per frame; empty where it was not measured).
+    """
+    rows: list[tuple[object, ...]] = []
+    for decision in material.inference.decisions:
+        where, best = decision.distance, decision.best
+        rows.append((where, best, REFERENCE, True, decision.best_share, decision.lod == best,
+                     _ms(material, where, best)))  # fmt: skip
+        rows += [
+            (where, v.lod, v.outcome, v.is_reached, v.share_cheapest, decision.lod == v.lod,
+             _ms(material, where, v.lod))
+            for v in decision.verdicts
+        ]  # fmt: skip
+    return pd.DataFrame(rows, columns=list(_COLUMNS))
+
+
+def decision_chart(material: Material) -> Figure:
+    """Draw, per distance and LoD, the share of draws in which it is the cheapest that is enough."""
+    table = decision_cells(material)
+    if table.empty:
+        return message_figure(TITLE, NO_VERDICT, is_simulated=material.is_simulated)
+    tables = material.tables
+    distances = [d for d in distance_order(tables.ratings) if d in set(table["distance"])]
+    lods = [lod for lod in lod_order(tables.ratings) if lod in set(table["lod"])][::-1]
+    figure = new_figure(
+        min(PAGE_WIDTH_IN, 1.4 + 1.4 * max(2, len(distances))),
+        1.0 + _ROW_IN * len(lods),
+        TITLE,
+        is_simulated=tables.is_simulated,
+    )
+    axes = figure.subplots()
+    tidy(axes, grid="")
+    cells = {(row["distance"], row["lod"]): row for row in records(table)}
+    for x, distance in enumerate(distances):
+        for y, lod in enumerate(lods):
+            _draw_cell(axes, x, y, cells.get((distance, lod)))
+    axes.set_xlim(-0.5, len(distances) - 0.5)
+    axes.set_ylim(len(lods) - 0.5, -0.5)
+    axes.set_xticks(
+        range(len(distances)), [distance_label(d, tables, joint="\n") for d in distances]
+    )
+    axes.set_yticks(range(len(lods)), lods)
+    axes.tick_params(length=0, labelsize=NORMAL)
+    axes.spines[:].set_visible(False)
+    return figure
+
+
+def _draw_cell(axes: Axes, x: int, y: int, cell: dict[str, Any] | None) -> None:
+    place, size = (x - 0.47, y - 0.45), (0.94, 0.90)
+    if cell is None:
+        axes.add_patch(Rectangle(place, *size, facecolor="white", edgecolor="#d5d5d5",
+                                 hatch="////", linewidth=0, zorder=0.5))  # fmt: skip
+        axes.text(x, y, "not rated", ha="center", va="center", fontsize=SMALL, color=QUIET,
+                  bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5})  # fmt: skip
+        return
+    colour = shade(cell["share_cheapest"])
+    ink = readable_on(colour)
+    axes.add_patch(Rectangle(place, *size, facecolor=colour, linewidth=0, zorder=0.5))
+    if cell["chosen"]:
+        axes.add_patch(Rectangle(place, *size, facecolor="none", edgecolor=INK, linewidth=2.4,
+                                 zorder=3))  # fmt: skip
+    verdict = str(cell["verdict"])
+    if verdict == NOT_SHOWN and not cell["is_tested"]:
+        verdict = "not tested"
+    price = f", {milliseconds(cell['ms'])}" if np.isfinite(cell["ms"]) else ""
+    axes.text(x, y - 0.17, percent(cell["share_cheapest"]), ha="center", va="center", color=ink,
+              fontsize=NORMAL + 2, fontweight="bold" if cell["chosen"] else "normal")  # fmt: skip
+    axes.text(x, y + 0.2, f"{verdict}{price}", ha="center", va="center", color=ink,
+              fontsize=SMALL)  # fmt: skip
+
+
+def _ms(material: Material, distance: str, lod: str) -> float:
+    found = material.costs.ms(distance, lod) if material.costs is not None else None
+    return np.nan if found is None else found

@@ -1,0 +1,52 @@
+"""What a chart may draw from: the tables, and what was concluded from them once for all charts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import pandas as pd
+
+from analysis.cost import Costs
+from analysis.inference import Inference, infer
+from analysis.reading import Tables
+from analysis.screening.flags import flags_of
+from analysis.screening.signals import observer_signals
+from analysis.screening.weights import observer_weights
+
+
+@dataclass(frozen=True)
+class Material:
+    """One study's tables, their costs, and what follows from them, worked out when first needed.
+
+    ``inferred`` and ``sensitivity`` (the verdicts without flagged people) are what the report has
+    worked out already.
+    """
+
+    tables: Tables
+    costs: Costs | None = None
+    inferred: Inference | None = None
+    sensitivity: pd.DataFrame | None = None
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether the answers come from simulated observers."""
+        return self.tables.is_simulated
+
+    @cached_property
+    def signals(self) -> pd.DataFrame:
+        """What each person's answers show."""
+        return observer_signals(self.tables)
+
+    @cached_property
+    def flags(self) -> dict[str, tuple[str, ...]]:
+        """The flags of every person who has any."""
+        return flags_of(self.signals)
+
+    @cached_property
+    def inference(self) -> Inference:
+        """The fitted models and verdicts."""
+        if self.inferred is not None:
+            return self.inferred
+        weights = observer_weights(self.signals)
+        return infer(self.tables, weights=weights or None, costs=self.costs)

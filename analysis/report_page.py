@@ -1,0 +1,82 @@
+"""The report as one page that loads nothing: texts, tables and charts put into ``report.html``."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from analysis.audit import Audit
+from analysis.charts import CHARTS
+from analysis.charts.style import SIMULATED
+from analysis.cost import Costs
+from analysis.inference import Inference
+from analysis.inference_tables import inference_tables
+from analysis.methods import methods
+from analysis.reading import Tables
+from analysis.report_tables import comparison_tables, design_table, quality_tables, rating_tables
+from analysis.sections import Section
+
+if TYPE_CHECKING:
+    from analysis.publish import Summary
+
+REPORT: Final = "report.html"
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What the report is put together from, beside the summary and the drawn charts.
+
+    ``findings`` and ``people`` are the sections before and after the quality of the data.
+    """
+
+    audit: Audit
+    costs: Costs | None
+    inference: Inference
+    findings: Sequence[Section]
+    people: Sequence[Section]
+
+
+def report_page(
+    tables: Tables, summary: Summary, *, parts: Parts, charts: Mapping[str, bytes]
+) -> str:
+    """Return the page; ``charts`` are the drawn ones as SVG, by name."""
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    studies = tables.ratings[["study", "study_version"]].dropna(how="all").drop_duplicates()
+    return environment.get_template(REPORT).render(
+        summary=summary,
+        study=", ".join(" ".join(row.dropna()) for _, row in studies.iterrows()),
+        source=Path(tables.source).name,
+        charts=_by_part(charts),
+        margins=parts.inference.margins.origins,
+        size_notes=parts.inference.curves.notes,
+        model_tables=inference_tables(parts.inference),
+        rating_tables=rating_tables(tables, parts.costs),
+        comparison_tables=comparison_tables(tables),
+        design_table=design_table(parts.audit),
+        quality_tables=quality_tables(tables),
+        findings_more=parts.findings,
+        people_more=parts.people,
+        methods=methods(tables, parts.costs),
+        label=SIMULATED,
+    )
+
+
+def _by_part(charts: Mapping[str, bytes]) -> dict[str, list[dict[str, Any]]]:
+    made: dict[str, list[dict[str, Any]]] = {chart.part: [] for chart in CHARTS}
+    for chart in CHARTS:
+        image = base64.b64encode(charts[chart.name]).decode()
+        made[chart.part].append(
+            {"name": chart.name, "title": chart.title, "caption": chart.caption, "image": image}
+        )
+    return made
