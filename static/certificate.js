@@ -7,6 +7,7 @@
 
 import { clockStep_ms } from "./clock.js";
 import { Intervals } from "./intervals.js";
+import { isFirefox } from "./measures.js";
 import { isWindowed, screenFacts } from "./screen.js";
 
 const isOnGrid = (edge_px) => Math.abs(edge_px - Math.round(edge_px)) < 0.05;
@@ -20,12 +21,10 @@ function visibleShare(box) {
 const round = (value, digits = 1) => Math.round(value * 10 ** digits) / 10 ** digits;
 
 // Firefox (from 132) numbers frames in presentedFrames whether they reached the screen or not: drawing
-// ten times a second it told of every frame of a clip of thirty. Only Gecko names its build so.
-const numbersAllFrames = /\bGecko\/\d/.test(navigator.userAgent);
-
+// ten times a second it told of every frame of a clip of thirty.
 /** What counts the frames of a video here: "frames", "callbacks", "quality", or nothing. */
 function counter(video) {
-  if (video.requestVideoFrameCallback) return numbersAllFrames ? "callbacks" : "frames";
+  if (video.requestVideoFrameCallback) return isFirefox() ? "callbacks" : "frames";
   return video.getVideoPlaybackQuality ? "quality" : "";
 }
 

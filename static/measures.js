@@ -14,10 +14,15 @@ export function isPhone() {
   return !isFine && Math.min(screen.width, screen.height) < 600;
 }
 
+/** True in Firefox and what is built on it, whatever name it gives itself. */
+export function isFirefox() {
+  return CSS.supports("-moz-appearance", "none");
+}
+
 /** The page's zoom, 1 for none; null where window and page cannot be compared. */
 export function zoomOf() {
   // Firefox measures the window in zoomed pixels too, and a full screen has no frame to compare.
-  if (CSS.supports("-moz-appearance", "none") || !outerWidth || !innerWidth) return null;
+  if (isFirefox() || !outerWidth || !innerWidth) return null;
   const found = outerWidth / innerWidth;
   return ZOOMS.find((zoom) => Math.abs(found / zoom - 1) < 0.03) ?? null;
 }

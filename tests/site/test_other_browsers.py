@@ -1,7 +1,9 @@
-"""A whole session in browsers other than Chromium: Firefox, and WebKit as GTK has it.
+"""Sessions in browsers as people have them: Firefox, WebKit as GTK has it, a Chromium that hides.
 
-Driven without packages of their own: Firefox by Marionette, its remote protocol; WebKit by the
-driver that Debian packages. Where a browser is not installed its test is skipped and says so.
+Driven without packages of their own: Firefox by Marionette, its remote protocol; the others by the
+drivers that Debian packages. Playwright, which drives Chromium in the other tests, keeps every page
+visible and in focus; by its driver alone a tab is hidden when another one is opened. Where a
+browser or driver is not installed its test is skipped and says so.
 """
 
 from __future__ import annotations
@@ -77,22 +79,26 @@ class Firefox:
 
 
 @dataclass
-class WebKit:
-    """WebKit by its driver: W3C WebDriver over HTTP."""
+class Driven:
+    """A browser by its driver: W3C WebDriver over HTTP."""
 
     url: str
+    options: dict[str, Any]
 
     PATHS: ClassVar[dict[str, str]] = {
         "Navigate": "url",
         "ExecuteScript": "execute/sync",
         "FindElement": "element",
         "ElementClick": "element/{id}/click",
+        "AddCookie": "cookie",
+        "NewWindow": "window/new",
+        "SwitchToWindow": "window",
+        "MinimizeWindow": "window/minimize",
+        "SetWindowRect": "window/rect",
     }
 
     def __post_init__(self) -> None:
-        options = {"binary": str(mini_browser()), "args": ["--automation"]}
-        wanted = {"alwaysMatch": {"webkitgtk:browserOptions": options}}
-        found = self._post("session", {"capabilities": wanted})
+        found = self._post("session", {"capabilities": {"alwaysMatch": self.options}})
         self.session = f"session/{found['sessionId']}"
 
     def ask(self, command: str, **values: Any) -> Any:
@@ -179,7 +185,21 @@ def webkit(folder: Path) -> Iterator[Browser]:
     ):
         wait_for("the screen", Path(f"/tmp/.X11-unix/X{port}").exists)
         wait_for("the driver", lambda: connected(port)).close()
-        yield WebKit(f"http://127.0.0.1:{port}")
+        options = {"binary": str(mini_browser()), "args": ["--automation"]}
+        yield Driven(f"http://127.0.0.1:{port}", {"webkitgtk:browserOptions": options})
+
+
+@contextmanager
+def chromium(folder: Path) -> Iterator[Browser]:
+    driver = shutil.which("chromedriver")
+    if driver is None:
+        pytest.skip("Chromium's driver is not installed (apt install chromium-driver)")
+    port = free_port()
+    switches = ["headless=new", "no-sandbox", "disable-dev-shm-usage", f"user-data-dir={folder}"]
+    options = {"binary": shutil.which("chromium"), "args": switches}
+    with running(driver, f"--port={port}"):
+        wait_for("the driver", lambda: connected(port)).close()
+        yield Driven(f"http://127.0.0.1:{port}", {"goog:chromeOptions": options})
 
 
 @dataclass
@@ -193,6 +213,10 @@ class Person:
 
     def wait_until(self, condition: str) -> None:
         wait_for(condition, lambda: self.script(f"return Boolean({condition})"))
+
+    def wait_for_stage(self, *states: str) -> None:
+        stage = "document.querySelector('.stage')?.dataset.state"
+        self.wait_until(f"{json.dumps(states)}.includes({stage})")
 
     def press(self, selector: str) -> None:
         self.wait_until(f"document.querySelector({json.dumps(selector)})?.checkVisibility()")
@@ -223,7 +247,7 @@ class Person:
 
     def watch_and_rate(self) -> None:
         self.press("[data-when=ready] [data-play]")
-        self.wait_until("document.querySelector('.stage').dataset.state === 'watched'")
+        self.wait_for_stage("watched")
         self.press("[data-when=watched] [data-to-questions]")
         for name, value in {"rating_left": 2, "rating_right": 4, "comparison": 1}.items():
             self.press(f"input[name={name}][value='{value}']")
@@ -282,3 +306,36 @@ def test_firefox_proves_nothing_where_it_cannot_tell_what_it_showed(
     assert record["counted_by"] == counted_by
     assert verdict.certified is not True
     assert "not-counted" in verdict.reasons
+
+
+def other_tab(browser: Browser) -> None:
+    browser.ask("SwitchToWindow", handle=browser.ask("NewWindow", type="tab")["handle"])
+
+
+def minimised(browser: Browser) -> None:
+    browser.ask("MinimizeWindow")
+
+
+@pytest.mark.parametrize("hide", [other_tab, minimised])
+def test_a_clip_in_a_tab_that_is_truly_hidden_does_not_count(
+    site: Any, folder: Path, hide: Callable[[Browser], None]
+) -> None:
+    guest = site.guest()
+    guest.walk_to_trial()
+    name = "ocularist_participant"
+    cookie = {"name": name, "value": guest.client.cookies[name]}
+    guest.client.close()
+    with chromium(folder) as browser:
+        person = Person(browser)
+        browser.ask("Navigate", url=site.url)
+        browser.ask("AddCookie", cookie=cookie)
+        browser.ask("Navigate", url=f"{site.url}/trial/1")
+        person.wait_for_stage("ready")
+        person.script("document.querySelector('video').playbackRate = 0.25")  # time to hide it
+        person.press("[data-when=ready] [data-play]")
+        hide(browser)
+        wait_for("the play's record", lambda: plays(site))
+    [(record, verdict)] = plays(site)
+    assert (record["ended_by"], record["was_hidden"]) == ("hidden", True)
+    assert verdict.certified is False
+    assert {"incomplete", "hidden"} <= set(verdict.reasons)

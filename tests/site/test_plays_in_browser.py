@@ -155,7 +155,7 @@ def test_a_throttled_processor_fails(visit: Any, page: Page, context: BrowserCon
 def test_a_page_that_was_hidden_fails(visit: Any, site: Any, page: Page) -> None:
     visit.straight_to_trial()
     visit.state("ready")
-    # Tabs of a headless browser are never hidden: say it as the browser would.
+    # Playwright keeps every tab visible; test_other_browsers hides one truly.
     line = """
         Object.defineProperty(document, "hidden", { value: true, configurable: true });
         document.dispatchEvent(new Event("visibilitychange"));
