@@ -12,7 +12,8 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
-from renderer.lod.policy import default_policy
+from renderer.lod.choice import LodPolicy, LodStep
+from renderer.lod.policy import Evidence, PolicyFile, default_policy, write_policy
 from study.cli import build_parser, main
 from study.commands.eye_options import spec_of, viewpoint_of
 from study.commands.listening import address_of, check_port, welcome
@@ -107,6 +108,29 @@ def test_a_still_shows_any_size_with_the_lods_that_follow_from_it(
     assert "--switching: takes the levels from a policy" in capsys.readouterr().err
     assert main(["still", "--iris-px", "300"]) == 1
     assert "approach_end_px: 300 is too large; one camera shows" in capsys.readouterr().err
+
+
+def test_a_still_takes_the_policy_of_a_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    drawn: list[ClipSpec] = []
+    monkeypatch.setattr("renderer.still.write_still", lambda _out, spec, **_: drawn.append(spec))
+    steps = [LodStep("low", Detail.uniform("low"), 20.0)]
+    steps += [LodStep("ultra", Detail.uniform("ultra"), None)]
+    own = LodPolicy(tuple(steps), hysteresis=0.2)
+    path = tmp_path / "lod_policy.json"
+    write_policy(PolicyFile(own, (Evidence(), Evidence()), "by hand"), path)
+    given = ["still", "--iris-px", "30", "--switching", "instant", "--lod-policy"]
+    assert main([*given, str(path)]) == 0
+    assert drawn[0].lod_policy == own
+    capsys.readouterr()
+    assert main(["still", "--lod-policy", str(path)]) == 1
+    assert "--lod-policy: says where eyes switch; add --switching" in capsys.readouterr().err
+    assert main([*given, str(tmp_path / "none.json")]) == 1
+    assert "none.json: No such file or directory" in capsys.readouterr().err
+    path.write_text("{}")
+    assert main([*given, str(path)]) == 1
+    assert "lod_policy.json: not a LoD policy of schema 1: no 'schema'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from study.commands.eye_options import spec_of, viewpoint_of
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
+    from renderer.lod.choice import LodPolicy
 
 HELP = "render one frame"
 DESCRIPTION = (
@@ -39,6 +40,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--switching",
         choices=("blended", "instant"),
         help="take both eyes' LoDs from their size in pixels, by Ocularist's own policy",
+    )
+    parser.add_argument(
+        "--lod-policy",
+        type=Path,
+        metavar="FILE",
+        help="with --switching: another policy, as lod-policy or analyse write it",
     )
     parser.add_argument(
         "--view",
@@ -92,12 +99,12 @@ def _by_size(spec: ClipSpec, options: argparse.Namespace) -> ClipSpec:
             raise CommandError("--frame: a frame has its own distance; leave --iris-px out")
         spec = replace(spec, motion="approach", approach_end_px=options.iris_px)
     if options.switching is None:
+        if options.lod_policy is not None:
+            raise CommandError("--lod-policy: says where eyes switch; add --switching")
         return spec
     if options.effect or options.only_effect:
         raise CommandError("--switching: takes the levels from a policy; leave effects out")
-    from renderer.lod.policy import default_policy
-
-    policy = default_policy()
+    policy = _policy(options.lod_policy)
     return replace(
         spec,
         left=policy.finest,
@@ -106,3 +113,17 @@ def _by_size(spec: ClipSpec, options: argparse.Namespace) -> ClipSpec:
         right_switching=options.switching,
         lod_policy=policy,
     )
+
+
+def _policy(path: Path | None) -> LodPolicy:
+    """Return the policy of a file, Ocularist's own without one."""
+    from renderer.lod.policy import default_policy, read_policy
+
+    if path is None:
+        return default_policy()
+    try:
+        return read_policy(path).policy
+    except OSError as error:
+        raise CommandError(f"--lod-policy: {path}: {error.strerror}") from None
+    except ValueError as error:
+        raise CommandError(f"--lod-policy: {error}") from None
