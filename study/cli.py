@@ -22,6 +22,7 @@ COMMANDS: Final = (
     "power",
     "render",
     "worker",
+    "figures",
     "still",
     "export-scene",
     "inspect",

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from study.settings import Settings
 
+FIGURE_NICENESS: Final = 10  # on top of the worker's own: clips come before figures
 _PR_SET_PDEATHSIG: Final = 1  # linux/prctl.h
 
 
@@ -31,6 +32,15 @@ def start_rendering(settings: Settings, *, niceness: int) -> subprocess.Popen[by
     """Start a worker; the higher its niceness, the more others come first."""
     return start_command(
         ["worker", *_places(settings)], environment=_secrets(settings), niceness=niceness
+    )
+
+
+def start_drawing(settings: Settings, claimed_by: str) -> subprocess.Popen[bytes]:
+    """Start the drawing of the figures that a worker of that name has claimed, behind all else."""
+    return start_command(
+        ["figures", "--claimed-by", claimed_by, *_places(settings)],
+        environment={**_secrets(settings), "OPENBLAS_NUM_THREADS": "1"},
+        niceness=FIGURE_NICENESS,
     )
 
 

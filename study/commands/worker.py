@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import argparse
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from study.commands.options import add_places, settings_of
 
 if TYPE_CHECKING:
     from renderer.studio import Studio
+    from study.data.database import Database
+    from study.settings import Settings
     from study.worker import Render
 
 HELP = "render the clips that a database waits for"
 DESCRIPTION = (
     "Claim and render clips until stopped. Several workers may share one database: no clip is "
-    "rendered twice, and one that is killed loses only its clip."
+    "rendered twice, and one that is killed loses only its clip. Beside that it draws the "
+    "dashboard's figures where answers have come."
 )
 
 
@@ -39,7 +45,7 @@ def run(options: argparse.Namespace) -> int:
     studio = Studio()  # before any clip is claimed: a machine without GL says so at once
     remove_parts(settings.media_folder)  # what a killed worker left
     try:
-        with stopping_on_signals() as stop:
+        with stopping_on_signals() as stop, _figures_beside(db, settings, options.until_empty):
             rendered = run_worker(
                 db,
                 settings.media_folder,
@@ -54,6 +60,33 @@ def run(options: argparse.Namespace) -> int:
     if options.until_empty:
         print(f"{rendered} clips rendered into {settings.media_folder}")
     return 0
+
+
+@contextmanager
+def _figures_beside(db: Database, settings: Settings, until_empty: bool) -> Iterator[None]:
+    """Have the dashboard's figures drawn beside the rendering, unless it is to end when done."""
+    from study.commands.processes import ending
+    from study.commands.starting import start_drawing
+    from study.figure_keeper import FigureKeeper, keep_figures
+
+    if until_empty:
+        yield
+        return
+    keeper = FigureKeeper(
+        db,
+        lambda name: start_drawing(settings, name),
+        ending=ending,
+        say=lambda line: print(line, file=sys.stderr, flush=True),
+    )
+    stop = threading.Event()
+    # The children end with this thread if the worker is killed, so it lives as long as the worker.
+    thread = threading.Thread(target=keep_figures, args=(keeper, stop), name="figures")
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()
 
 
 def rendering_with(studio: Studio) -> Render:

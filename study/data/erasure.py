@@ -15,7 +15,7 @@ from typing import Final
 
 from sqlalchemy import delete, select, update
 
-from study.data import progress
+from study.data import figures, progress
 from study.data.database import Database
 from study.data.participants import Participant
 from study.data.schema import (
@@ -67,6 +67,7 @@ def withdraw(db: Database, participant: Participant) -> None:
         for table in _ABOUT_A_PERSON:
             session.execute(delete(table).where(table.participant_id == row.id))
         session.delete(erasure)
+        figures.forget(session, row.study_id)  # somebody is drawn in them who is gone
         mine = LinkRow.participant_id == row.id
         session.execute(update(LinkRow).where(mine).values(participant_id=None))
         session.delete(row)

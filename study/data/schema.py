@@ -9,7 +9,17 @@ from __future__ import annotations
 from datetime import UTC, date, datetime
 from typing import Any, ClassVar
 
-from sqlalchemy import JSON, BigInteger, ForeignKey, Index, MetaData, String, Text, UniqueConstraint
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    ForeignKey,
+    Index,
+    LargeBinary,
+    MetaData,
+    String,
+    Text,
+    UniqueConstraint,
+)
 from sqlalchemy.engine import Dialect
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 from sqlalchemy.types import DateTime, TypeDecorator
@@ -248,3 +258,34 @@ class LimitRow(Base):
     who: Mapped[str] = mapped_column(String(64), primary_key=True)
     since: Mapped[datetime]
     count: Mapped[int]
+
+
+class FigureSetRow(Base):
+    """The figures of one study's answers, people's or simulated ones, as of one moment.
+
+    ``seen`` says which answers they were drawn from; ``summary`` is what stands beside them.
+    """
+
+    __tablename__ = "figure_sets"
+    __table_args__ = (UniqueConstraint("study_id", "kind"),)
+    id: Mapped[int] = mapped_column(primary_key=True)
+    study_id: Mapped[int] = mapped_column(ForeignKey("studies.id"))
+    kind: Mapped[str] = mapped_column(String(20))
+    as_of: Mapped[datetime | None]
+    seen: Mapped[str | None] = mapped_column(String(100))
+    took_s: Mapped[float | None]
+    summary: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
+    claimed_by: Mapped[str | None] = mapped_column(String(200))
+    lease_until: Mapped[datetime | None]
+    started_at: Mapped[datetime | None]
+    error: Mapped[str | None] = mapped_column(Text)
+    failed_at: Mapped[datetime | None]
+
+
+class FigureFileRow(Base):
+    """One file of a set of figures, compressed by zlib."""
+
+    __tablename__ = "figure_files"
+    set_id: Mapped[int] = mapped_column(ForeignKey("figure_sets.id"), primary_key=True)
+    name: Mapped[str] = mapped_column(String(100), primary_key=True)
+    content: Mapped[bytes] = mapped_column(LargeBinary)

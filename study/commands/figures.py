@@ -1,0 +1,45 @@
+"""``ocularist figures``: draw the dashboard's figures where answers have come.
+
+A worker starts this by itself; by hand it serves where no worker runs.
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from study.commands.options import add_places, settings_of
+
+HELP = "draw the dashboard's figures"
+DESCRIPTION = (
+    "Draw the figures and the report that the dashboard shows, where answers have come since and "
+    "a researcher has switched the results on. A worker does this by itself, at most once a "
+    "minute; use this command where none runs."
+)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add this command's arguments."""
+    add_places(parser)
+    parser.add_argument("--claimed-by", metavar="NAME", help=argparse.SUPPRESS)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Draw what is due, or what the worker of that name has claimed."""
+    from study.commands.preparing import open_existing
+    from study.data import figures
+    from study.figures import draw_claimed
+    from study.worker_names import is_dead, worker_name
+
+    db = open_existing(settings_of(options))
+    try:
+        if options.claimed_by:
+            draw_claimed(db, worker=options.claimed_by)
+            return 0
+        figures.free_dead(db, is_dead)
+        name, drawn = worker_name(), 0
+        while figures.claim(db, worker=name) is not None:
+            drawn += draw_claimed(db, worker=name)
+    finally:
+        db.close()
+    print(f"{drawn} sets of figures drawn" if drawn != 1 else "1 set of figures drawn")
+    return 0
