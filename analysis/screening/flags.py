@@ -13,15 +13,19 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
+from analysis.screening.evidence import typical
+
 SHUFFLER, STRAIGHT_LINER, EXTREME = "shuffler", "straight-liner", "extreme"
 INVERTER, SIDE_PICKER, FALSE_ALARMS = "inverter", "side-picker", "false alarms"
 
 _FEW: Final = 6  # ratings or comparisons below which a pattern of use says nothing
 _NEARLY_ALL: Final = 0.9
 _FEW_AGAINST: Final = 3
-_CLEARLY_LESS: Final = 2.5  # standard errors below the typical slope
-_MAYBE_NONE: Final = 1.645  # standard errors above zero
-_FAR_ABOVE: Final = 3.5  # robust standard deviations of log inconsistency
+_CHANCE: Final = 2.326  # of 100 people who do not look, 99 stay below
+_UNLIKE_OTHERS: Final = 2.576  # sds of people below the median person: 1 honest one in 200
+_LEAST_SD: Final = 0.5  # of people's evidence: a few may agree by chance
+_TURNED: Final = -1.645
+_TURNED_AND_SEEN: Final = (-0.5, 2.5)  # with differences that are noticed all the same
 
 
 @dataclass(frozen=True)
@@ -49,14 +53,30 @@ def _is_side_picker(s: pd.DataFrame) -> pd.Series:
 
 
 def _is_inverter(s: pd.DataFrame) -> pd.Series:
-    turned = s["slope"] < -0.5 * typical_slope(s)
-    return turned & (s["slope"] / s["slope_error"] < -_MAYBE_NONE)
+    """Ratings and comparisons run against the others', but differences are seen.
+
+    What is noticed tells it from answers without looking, which may run backwards by chance.
+    """
+    if _is_vague(s["valuing"]):
+        return pd.Series(data=False, index=s.index)
+    least, apart = _TURNED_AND_SEEN
+    expected = (s["noticing"].median() + s["valuing"].median()) / 2
+    is_seen = s["noticing"] - s["valuing"] > max(apart, expected)
+    is_turned = s["valuing"].lt(least) & is_seen
+    return is_turned | (s["valuing"].lt(_TURNED) & s["noticing"].isna())
 
 
 def _is_shuffler(s: pd.DataFrame) -> pd.Series:
-    below = (typical_slope(s) - s["slope"]) / s["slope_error"] > _CLEARLY_LESS
-    unrelated = below & (s["slope"] / s["slope_error"] < _MAYBE_NONE)
-    return unrelated | (_scatter_rank(s) > _FAR_ABOVE)
+    """What not looking gives, and clearly less than others' answers show."""
+    middle, spread = typical(s["looking"].to_numpy(dtype=float))
+    limit = min(_CHANCE, middle - _UNLIKE_OTHERS * max(spread, _LEAST_SD))
+    return s["looking"] < limit
+
+
+def _is_vague(evidence: pd.Series) -> bool:
+    """Say whether even the median person's answers could be chance: then nobody is turned."""
+    middle, _ = typical(evidence.to_numpy(dtype=float))
+    return not middle > -_TURNED
 
 
 def _has_false_alarms(s: pd.DataFrame) -> pd.Series:
@@ -68,7 +88,7 @@ FLAGS: Final = (
     Flag(EXTREME, "used almost only the two ends of the scale", _is_extreme),
     Flag(SIDE_PICKER, "preferred the same side whatever stood there", _is_side_picker),
     Flag(INVERTER, "rated high what others rated low", _is_inverter),
-    Flag(SHUFFLER, "ratings have nothing to do with what was shown", _is_shuffler),
+    Flag(SHUFFLER, "answers have nothing to do with what was shown", _is_shuffler),
     Flag(FALSE_ALARMS, "saw differences between equal eyes more often than not", _has_false_alarms),
 )
 
@@ -93,16 +113,3 @@ def typical_slope(signals: pd.DataFrame) -> float:
     """
     known = signals["slope"].dropna()
     return max(float(known.median()), 0.0) if len(known) > 2 else 0.0
-
-
-def _scatter_rank(s: pd.DataFrame) -> pd.Series:
-    """Return how far each log inconsistency lies above the median, in robust sds.
-
-    The sd is at least that of an estimate from so few ratings, 1 / sqrt(2 n).
-    """
-    scatter = np.log(s["inconsistency"])
-    away = scatter - scatter.median()
-    ordinary = 1.4826 * away.abs().median()
-    chance = 1 / np.sqrt(2 * np.maximum(s["ratings"], 1))
-    ranked: pd.Series = away / np.hypot(ordinary, chance)
-    return ranked if len(s) > 2 else ranked * 0.0

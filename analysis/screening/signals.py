@@ -11,6 +11,7 @@ from analysis.ordering import lod_ranks
 from analysis.reading import Tables
 from analysis.screening.annex_e import bias_and_inconsistency
 from analysis.screening.bt500 import is_rejected
+from analysis.screening.evidence import evidence_of
 from analysis.screening.following import following
 from analysis.screening.presented import Presented, presented, sums
 from analysis.shares import wilson
@@ -18,6 +19,7 @@ from analysis.shares import wilson
 COLUMNS: Final = (
     *("participant", "ratings", "bias", "inconsistency", "bt500"),
     *("slope", "slope_error", "correlation", "same_share", "ends_share"),
+    *("looking", "valuing", "noticing"),
     *("compared", "side", "side_share", "against", "against_share"),
     *("catch_pairs", "false_alarms", "alarms_low", "alarms_high"),
     *("presentations", "certified_share"),
@@ -27,15 +29,21 @@ COLUMNS: Final = (
 def observer_signals(tables: Tables) -> pd.DataFrame:
     """Return one row per person who answered anything that counts; columns are COLUMNS.
 
+    looking, valuing and noticing: how far all answers, ratings and comparisons, and what was
+    noticed go with what was shown, in standard deviations of chance (``evidence``);
     same_share: of the person's most frequent rating; ends_share: of the lowest and the highest;
     side_share: of comparisons that name ``side``; against: comparisons in which the greater LoD
     stood on the other side, and against_share how many of them name ``side`` all the same;
     false_alarms: share of yes among catch pairs, with Wilson's 95 % interval. A cell is empty
     where the person gave nothing to tell it from.
     """
-    parts = (_of_ratings(tables), _of_comparisons(tables), _of_catches(tables), _watched(tables))
-    made = parts[0]
-    for part in parts[1:]:
+    made = _of_ratings(tables)
+    for part in (
+        _of_comparisons(tables),
+        _of_catches(tables),
+        _watched(tables),
+        _of_evidence(tables),
+    ):
         made = made.merge(part, on="participant", how="outer")
     for name in ("ratings", "compared", "against", "catch_pairs", "presentations"):
         made[name] = made[name].fillna(0).astype(int)
@@ -126,6 +134,18 @@ def _of_catches(tables: Tables) -> pd.DataFrame:
         table.append((who, count, yes / count, low, high))
     names = ["participant", "catch_pairs", "false_alarms", "alarms_low", "alarms_high"]
     return pd.DataFrame(table, columns=names).astype({"participant": "string"})
+
+
+def _of_evidence(tables: Tables) -> pd.DataFrame:
+    found = evidence_of(tables)
+    return pd.DataFrame(
+        {
+            "participant": pd.Series(found.people, dtype="string"),
+            "looking": found.looking,
+            "valuing": found.valuing,
+            "noticing": found.noticing,
+        }
+    )
 
 
 def _watched(tables: Tables) -> pd.DataFrame:

@@ -44,22 +44,28 @@ def test_every_spoiler_gets_its_name() -> None:
     assert {f"S{i:03}": (kind,) for i, kind in enumerate(SPOILERS, start=1)} == found
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(("distances", "least"), [(("macroscopic", "far"), 0.7), (None, 0.85)])
+@pytest.mark.parametrize(
+    ("distances", "least", "seeds"),
+    [
+        (("macroscopic", "far"), 0.8, 5),
+        pytest.param(("macroscopic", "far"), 0.95, 40, marks=pytest.mark.long),
+        pytest.param(None, 1.0, 40, marks=pytest.mark.long),
+    ],
+)
 def test_spoilers_are_named_and_clean_people_are_not_over_many_studies(
-    distances: tuple[str, ...] | None, least: float
+    distances: tuple[str, ...] | None, least: float, seeds: int
 ) -> None:
     shown = clips(distances or tuple(POPULATION.iris_px))
     kinds = dict(enumerate(SPOILERS))
     hits: Counter[str] = Counter()
-    clean, seeds = 0, 40
+    clean = 0
     for seed in range(seeds):
         found = flagged(seed, shown, kinds)
         for i, kind in kinds.items():
             hits[kind] += kind in found.pop(f"S{i + 1:03}", ())
         clean += len(found)
     assert all(hits[kind] >= least * seeds for kind in SPOILERS), hits  # shufflers are the hardest
-    assert clean <= 0.02 * 25 * seeds, clean
+    assert clean <= 0.01 * 25 * seeds, clean
     print(f"named {dict(hits)} of {seeds}; clean people flagged {clean} of {25 * seeds}")
 
 

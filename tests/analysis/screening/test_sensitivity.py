@@ -9,7 +9,7 @@ import pytest
 
 from analysis.decision import verdicts
 from analysis.decision.verdicts import Decision, Verdict
-from analysis.inference import infer
+from analysis.inference import decisions_of
 from analysis.observers import Stimulus
 from analysis.population import POPULATION
 from analysis.reading import Tables, tables_from
@@ -90,7 +90,7 @@ def moved_by_spoilers(seed: int, clips: dict[str, Stimulus]) -> list[str]:
         found.append(
             {
                 (own.distance, verdict.lod): verdict.outcome
-                for own in infer(tables, weights=weights or None).decisions
+                for own in decisions_of(tables, weights=weights or None)
                 for verdict in own.verdicts
             }
         )
