@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from analysis.observers import Answer, Observer, Stimulus
+from study.design.attention import Attention
 from study.design.definition import StudyDefinition
 from study.design.parts import read_size
-from study.design.pauses import Attention
 from study.design.pixels import median_iris_px
 from study.design.questions import (
     AnalogueQuestion,
     Asked,
     MultipleQuestion,
     NumberQuestion,
-    Question,
     TextQuestion,
     Value,
     accepted_values,
@@ -50,9 +48,25 @@ def about_answers(
 
 
 def trial_answers(
-    questions: Sequence[Question], answer: Answer, rng: np.random.Generator
+    definition: StudyDefinition,
+    answer: Answer,
+    *,
+    number: int,
+    observer: Observer,
+    rng: np.random.Generator,
 ) -> dict[str, Value | None]:
-    """Put an observer's answer into a study's questions; of other questions answers are drawn."""
+    """Answer the questions of a trial, whose ``number`` is below 1 in practice.
+
+    An observer's answer is put where the study asks for it, and of other questions answers are
+    drawn.
+    """
+    asked = each_asked(definition.questions_at(number, is_practice=number < 1))
+    told = {
+        name: value
+        for each in definition.attention_within
+        if each.within == number
+        for name, value in attention_answer(each, observer, rng).items()
+    }
     known: dict[str, Value | None] = {
         "rating_left": answer.left_rating,
         "rating_right": answer.right_rating,
@@ -61,11 +75,12 @@ def trial_answers(
         "what_differed": answer.what_differed,
         "comments": answer.comments,
     }
+    known |= told
     return {
         q.id: known[q.id]
         if q.id in known and not (q.is_required and known[q.id] is None)
         else _fitting(q, None, rng)
-        for q in each_asked(questions)
+        for q in asked
     }
 
 

@@ -160,7 +160,9 @@ def _rate(
         play = complete_play(int(page.data["frames"]))
         key = f"play-{position}-{view}"
         browser.report({"kind": "play", "key": key, "position": position, "play": play})
-    given = _filled(trial_answers(definition.questions, answer, rng))
+    number = position - len(definition.practice)
+    answers = trial_answers(definition, answer, number=number, observer=observer, rng=rng)
+    given = _filled(answers)
     for question, value in given.items():
         entry = {"kind": "answer", "key": f"answer-{position}-{question}", "position": position}
         browser.report({**entry, "question": question, "value": value})

@@ -5,7 +5,7 @@ Their answers come from ``analysis.observers`` and are marked as simulated where
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -64,7 +64,14 @@ def _take_part(db: Database, study: Study, rng: np.random.Generator) -> None:
             definition, trial.clip, size=leased.size or "", orbit=leased.orbit_direction or ""
         )
         answer = observer.answer(seen, rng, position=trial.number)
-        _store(db, leased, definition, trial=trial, answer=answer, rng=rng)
+        given = trial_answers(
+            definition,
+            answer,
+            number=0 if trial.is_practice else trial.number,
+            observer=observer,
+            rng=rng,
+        )
+        _store(db, leased, definition, trial=trial, answer=answer, given=given)
         if not trial.is_practice:
             _pause(db, leased, observer, after=trial.number, rng=rng)
 
@@ -86,7 +93,7 @@ def _store(
     *,
     trial: Trial,
     answer: Answer,
-    rng: np.random.Generator,
+    given: Mapping[str, object],
 ) -> None:
     frames = round(definition.orbit.duration_s * definition.orbit.fps)
     for view in range(max(answer.views, definition.order.min_views)):
@@ -102,7 +109,7 @@ def _store(
         db,
         person,
         trial.position,
-        trial_answers(definition.questions, answer, rng),
+        given,
         key=f"answers-{trial.position}",
         is_final=True,
         response_ms=answer.response_ms,

@@ -6,7 +6,7 @@ fixed: what comes later is kept as an amendment, for the record, and does not co
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +21,7 @@ from study.data.senders import locking_again
 from study.data.studies import by_id
 from study.data.trials import AMENDED, ANSWERED, Trial, events_of, trial_of
 from study.design.definition import StudyDefinition
-from study.design.questions import Value, each_asked, read_answers
+from study.design.questions import Question, Value, each_asked, read_answers
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,8 @@ def storing(
     check_reached(trial)
     # What was given before matters only now that all of it is put together.
     state = trial_of(trial, (yield from events_of(trial))) if is_final else None
-    answers = _read(definition, state, given)
+    asked = definition.questions_at(trial.number, is_practice=trial.is_practice)
+    answers = _read(definition, asked, state, given)
     is_final = is_final and not was_complete
     payload: dict[str, Any] = {
         "answers": answers,
@@ -114,15 +115,18 @@ def storing(
 
 
 def _read(
-    definition: StudyDefinition, state: Trial | None, given: Mapping[str, object]
+    definition: StudyDefinition,
+    asked: Sequence[Question],
+    state: Trial | None,
+    given: Mapping[str, object],
 ) -> dict[str, Value | None]:
     """Return the answers to store: those given, and with a ``state`` all others as they stand."""
     if state is None:
-        return read_answers(definition.questions, given, is_final=False)
+        return read_answers(asked, given, is_final=False)
     needed = definition.order.min_views
     if state.views < needed:
         raise NotWatchedError(
             f"the clip has to be watched to the end {needed} x first; so far {state.views} x"
         )
-    every = dict.fromkeys(question.id for question in each_asked(definition.questions))
-    return read_answers(definition.questions, {**every, **state.answers, **given})
+    every = dict.fromkeys(question.id for question in each_asked(asked))
+    return read_answers(asked, {**every, **state.answers, **given})

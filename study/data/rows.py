@@ -107,7 +107,7 @@ def comparison_row(definition: StudyDefinition, shared: Row, collected: Collecte
         **shared["_iris_deg"][2],
         "left_lod": clip.left,
         "right_lod": clip.right,
-        **own_answers.cells(definition.questions, collected.trial.answers),
+        **own_answers.cells(definition.questions_of_all_trials, collected.trial.answers),
     }
 
 

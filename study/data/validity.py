@@ -1,6 +1,7 @@
 """Validity: how many gold trials and attention questions a participant answered as expected.
 
-Data for researchers. Nobody who takes part is told, and a skipped question counts neither way.
+An attention question counts alike on a page of its own and among a trial's questions. Data for
+researchers: nobody who takes part is told, and a skipped question counts neither way.
 """
 
 from __future__ import annotations
@@ -46,16 +47,19 @@ def tally_of(
     attention: Mapping[str, Mapping[str, Any]],
 ) -> Tally:
     """Return the tally of complete trials and of answers by pause."""
+    done = [trial for trial in mine if trial.is_complete]
     golds = {gold.id: gold for gold in definition.gold}
-    gold = [
-        is_passed(golds[trial.clip], trial.answers)
-        for trial in mine
-        if trial.is_complete and trial.clip in golds
-    ]
+    gold = [is_passed(golds[trial.clip], trial.answers) for trial in done if trial.clip in golds]
     asked = [
         pause.attention.is_passed(attention[pause.key])
         for pause in definition.pauses
         if pause.attention is not None and pause.key in attention
+    ]
+    asked += [
+        each.is_passed(trial.answers)
+        for each in definition.attention_within
+        for trial in done
+        if trial.number == each.within and not trial.is_practice
     ]
     return Tally(
         gold_passed=gold.count(True),

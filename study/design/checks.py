@@ -13,13 +13,14 @@ from pydantic import ValidationError
 
 from renderer.detail import EFFECTS
 from study.design.approach import check_approaches, check_switching
+from study.design.attention import check_attention
 from study.design.completion import check_completion
 from study.design.decision import check_decision
 from study.design.faults import Fault, Place, dotted, unknown
 from study.design.gold import check_gold
 from study.design.irises import check_irises
 from study.design.pairings import CatchClip, Factors
-from study.design.pauses import check_pauses
+from study.design.pauses import check_breaks
 from study.design.question_checks import check_questions
 from study.design.raw import Data, repeated, rows_of, table_of
 from study.design.recruiting import check_recruiting
@@ -134,7 +135,8 @@ _CHECKS: Final[tuple[Callable[[Data], Iterator[Fault]], ...]] = (
     check_irises,
     _check_clips,
     check_gold,
-    check_pauses,
+    check_attention,
+    check_breaks,
     check_questions,
     check_consent,
     check_completion,

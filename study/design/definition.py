@@ -15,13 +15,15 @@ from typing import Any
 from pydantic import ValidationError
 
 from renderer.clip import DIRECTIONS
+from study.design.attention import late_attention
 from study.design.checks import cross_faults
 from study.design.faults import DefinitionError, Fault, faults_of, suggestion
 from study.design.files import find_files
-from study.design.model import StudyDefinition, WantedClip
-from study.design.pauses import late_faults
+from study.design.model import StudyDefinition
+from study.design.pauses import late_breaks
 from study.design.per_person import per_person_faults
 from study.design.translations import find_translations, translation_faults
+from study.design.wanted import WantedClip
 
 __all__ = [
     "DefinitionError",
@@ -113,7 +115,8 @@ def _design_faults(definition: StudyDefinition) -> Iterator[Fault]:
     yield from faults
     if not faults:
         count = definition.trial_count
-        yield from late_faults(count, definition.breaks, definition.attention)
+        yield from late_attention(count, definition.attention)
+        yield from late_breaks(count, definition.breaks)
         for index, gold in enumerate(definition.gold):
             if gold.after >= count:
                 place = f"gold.{index}.after"

@@ -43,7 +43,8 @@ def visit_parts(definition: StudyDefinition) -> dict[str, float]:
         "breaks and questions between": sum(
             BREAK_S if pause.attention is None else _answering_s([pause.attention.question]) + 5.0
             for pause in definition.pauses
-        ),
+        )
+        + _answering_s(each.question for each in definition.attention_within),
         "end": _reading_s(definition.thanks.paragraphs),
     }
     return {name: seconds for name, seconds in parts.items() if seconds}

@@ -118,6 +118,7 @@ _LATER: Final[Mapping[str, Any]] = {
     **dict.fromkeys(("minimum_age", "motion_warning", "withdrawal", "backup_days", "health"), None),
     "max_views": None,
     "decision": None,
+    **dict.fromkeys(("within", "before"), None),
     "certificate": Certificate().model_dump(mode="json"),
 }
 

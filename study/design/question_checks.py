@@ -16,7 +16,8 @@ NUMERIC: Final = ("scale", "number", "analogue")
 BOUNDS: Final = (("lowest", "highest"), ("minimum", "maximum"))
 # A scale of more steps fits on no line of a page; a line to mark has no steps to be seen.
 MOST_STEPS: Final = 11
-TAKEN: Final = {*column_names("comparisons"), *column_names("ratings")} - STANDARD.keys()
+COLUMNS: Final = frozenset((*column_names("comparisons"), *column_names("ratings")))
+TAKEN: Final = COLUMNS - STANDARD.keys()
 
 
 @dataclass(frozen=True)

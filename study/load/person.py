@@ -103,7 +103,9 @@ class Person(Visit):
         for _ in range(int(self.data("views_left"))):
             play = {"kind": "play", "position": position, "play": complete_play(frames)}
             await self.report(play, "play")
-        given = _answers(self.definition.questions, self.rng)
+        number = position - len(self.definition.practice)
+        asked = self.definition.questions_at(number, is_practice=number < 1)
+        given = _answers(asked, self.rng)
         if self.uses_outbox:
             for question, value in given.items():
                 entry = {"kind": "answer", "position": position}

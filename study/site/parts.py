@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -26,6 +26,10 @@ class Parts:
     rows: list[list[Question]]
     blank: Markup
     estimate_s: float
+
+    def rows_of(self, questions: Sequence[Question]) -> list[list[Question]]:
+        """Return a trial's questions in rows: those of every trial, unless it asks others."""
+        return self.rows if questions is self.definition.questions else question_rows(questions)
 
 
 @dataclass

@@ -17,7 +17,8 @@ from study.data.errands import Errand
 from study.data.progress import Step
 from study.data.refusals import NotWatchedError
 from study.data.trials import Trial
-from study.design.questions import AnswerError
+from study.design.definition import StudyDefinition
+from study.design.questions import AnswerError, Question
 from study.site.access import Visitor, as_visitor, check_csrf, redirect, step_url, to_current
 from study.site.asker import Asker, by_cookie, found, locked, study_of
 from study.site.forms import Fields, answers_in, first, read_form
@@ -79,6 +80,8 @@ def _trial_page(
     text = frame["text"]
     answers_so_far = {**found.answers, **(given or {})}
     parts = here.parts.of(definition, text)
+    rows = parts.rows_of(_asked_in(definition, found))
+    is_blank = not (answers_so_far or error) and rows is parts.rows
     return here.page(
         "participant/trial.html",
         status=422 if error or note else 200,
@@ -97,14 +100,18 @@ def _trial_page(
         code=f"{visitor.name.upper()}-{found.position}",
         seconds=max(1, round(record.frame_count / record.fps)),
         minutes_left=minutes_left(definition, every, estimate_s=parts.estimate_s),
-        rows=parts.rows,
-        blank=None if answers_so_far or error else parts.blank,
+        rows=rows,
+        blank=parts.blank if is_blank else None,
         answers=answers_so_far,
         faults=error.said(text) if error else {},
         note=text(note) if note else "",
         key=secrets.token_hex(16),
         button=text("trial.finish" if is_last else "trial.next"),
     )
+
+
+def _asked_in(definition: StudyDefinition, found: Trial) -> tuple[Question, ...]:
+    return definition.questions_at(found.number, is_practice=found.is_practice)
 
 
 def _views_allowed(most: int | None, found: Trial) -> int | None:
@@ -178,7 +185,7 @@ def _finish(
         definition,
         who,
         position,
-        answers_in(fields, definition.questions),
+        answers_in(fields, _asked_in(definition, stood[0].trial)),
         key=first(fields, "key") or f"finish-{position}",
         is_final=True,
         response_ms=_milliseconds(first(fields, "response_ms")),
@@ -200,7 +207,7 @@ def _again(
     record = here.clips.record(current.clip_id)
     if record is None:
         return _missing(request, here, visitor, current)
-    given = answers_in(fields, visitor.study.definition.questions)
+    given = answers_in(fields, _asked_in(visitor.study.definition, current))
     if isinstance(refused, AnswerError):
         return _trial_page(here, visitor, step, every, record, given=given, error=refused)
     return _trial_page(here, visitor, step, every, record, given=given, note="trial.locked_kept")
