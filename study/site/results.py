@@ -48,7 +48,7 @@ def results(here: Here, researcher: ResearcherHere, data: str = KINDS[0]) -> Res
         return here.page("researcher/results_hidden.html", **common, fault="")
     kind = data if data in KINDS else KINDS[0]
     found = figures.latest(here.db, study.id, kind)
-    return here.page("researcher/results.html", **common, kind=kind, found=found, now=here.db.now())
+    return here.page("researcher/results.html", **common, kind=kind, found=found)
 
 
 def _sees(here: Place, researcher: SignedIn, study: Study) -> bool:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import base64
 import io
 import json
 import re
+import subprocess
+import sys
 import zipfile
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import pandas as pd
 import pytest
 
-from study.data import jobs, researchers
+from study.data import figures, jobs, researchers
+from study.data.schema import FigureSetRow
+from study.figures import draw_claimed
 from study.simulate import simulate
 
 
@@ -146,28 +152,99 @@ def test_every_clip_can_be_looked_at_with_what_is_known_of_it(ada: Any) -> None:
     assert ada.get("/researcher/clips/0000").status_code == 404
 
 
+def draw_results(db: Any) -> None:
+    """Do what a worker has done in a process of its own."""
+    while figures.claim(db, worker="worker") is not None:
+        assert draw_claimed(db, worker="worker")
+
+
 def test_results_are_hidden_until_asked_for_and_the_asking_is_recorded(site: Any, ada: Any) -> None:
     simulate(site.db, site.study.definition, participants=2, seed=1)
     page = ada.get("/researcher/results").text
     assert "The results are hidden" in page
-    assert "Mean perceived realism" not in page
+    assert "Answer so far" not in page
+    assert figures.due(site.db) == []  # and nobody computes what nobody may see
     figure = "/researcher/results/simulated/realism-matrix.svg"
     assert ada.client.get(figure).status_code == 403
     assert "Please tick the sentence first." in ada.post("/researcher/results", show="yes").text
     page = ada.post("/researcher/results", show="yes", sure="yes").text
     assert "No participant has answered yet" in page
     assert "showed the results" in page
+    draw_results(site.db)
     page = ada.get("/researcher/results?data=simulated").text
-    assert "Mean perceived realism" in page
+    assert "Answer so far" in page
     assert "SIMULATED</span> These answers come from simulated observers" in page
     drawn = ada.client.get(figure)
     assert drawn.headers["content-type"] == "image/svg+xml"
     assert drawn.text.count("<svg") == 1
-    assert ada.client.get("/researcher/results/simulated/nothing.svg").status_code == 404
+    for name in ("nothing.svg", "realism-matrix.py", "realism-matrix"):
+        assert ada.client.get(f"/researcher/results/simulated/{name}").status_code == 404
     ada.post("/researcher/results", show="no")
     assert "The results are hidden" in ada.page.text
+    assert ada.client.get(figure).status_code == 403
     kinds = [entry.kind for entry in researchers.logged(site.db, site.study)]
     assert kinds == ["results-hidden", "results-shown"]
+
+
+def test_the_figures_are_the_reports_own_and_stamped(site: Any, ada: Any) -> None:
+    simulate(site.db, site.study.definition, participants=2, seed=1)
+    ada.get("/researcher/results")
+    ada.post("/researcher/results", show="yes", sure="yes")
+    page = ada.get("/researcher/results?data=simulated").text
+    assert "The figures wait for a worker" in page
+    assert "<code>ocularist figures</code>" in page
+    figures.claim(site.db, worker="worker")
+    page = ada.get("/researcher/results?data=simulated").text
+    assert "The figures are being drawn for the first time." in page
+    draw_claimed(site.db, worker="worker")
+    page = ada.get("/researcher/results?data=simulated").text
+    found = figures.latest(site.db, site.study.id, "simulated")
+    assert f"As of {found.as_of:%Y-%m-%d %H:%M:%S} UTC" in page
+    assert "No answer has come since." in page
+    names = re.findall(r'<figure id="([a-z-]+)">', page)
+    assert names == [chart["name"] for chart in found.summary["charts"]]
+    assert names[0] == "decision-chart"
+    report = ada.client.get("/researcher/results/simulated/report.html")
+    assert report.headers["content-disposition"].startswith("attachment; filename=")
+    for name in names:
+        base = f"/researcher/results/simulated/{name}"
+        image = base64.b64encode(ada.client.get(f"{base}.svg").content).decode()
+        assert image in report.text, name
+        numbers = ada.client.get(f"{base}.csv")
+        assert numbers.headers["content-type"] == "text/csv; charset=utf-8"
+        assert "simulated" in numbers.text.partition("\n")[0]
+
+
+def test_newer_answers_and_failures_are_told(site: Any, ada: Any) -> None:
+    simulate(site.db, site.study.definition, participants=1, seed=1)
+    ada.get("/researcher/results")
+    ada.post("/researcher/results", show="yes", sure="yes")
+    own = figures.claim(site.db, worker="worker")
+    figures.fail(site.db, own, worker="worker", error="OSError: <no> room on the disk")
+    page = ada.get("/researcher/results?data=simulated").text
+    assert "The figures could not be drawn" in page
+    assert "OSError: &lt;no&gt; room on the disk" in page
+    own = replace(own, seen="")  # as if drawn from answers before these
+    with site.db.writing() as session:
+        row = session.get(FigureSetRow, own.id)
+        row.claimed_by = "worker"
+    summary = {"people": 1, "ratings": 2, "verdicts": [], "findings": [["near", "nothing."]]}
+    summary |= {"limits": [], "design": [], "quality": [], "charts": []}
+    figures.store(site.db, own, worker="worker", summary=summary, files={})
+    page = ada.get("/researcher/results?data=simulated").text
+    assert "Newer answers have come; figures of them follow, at most once a minute." in page
+    assert "<strong>near</strong>: nothing." in page
+    assert "could not be drawn" not in page
+
+
+def test_the_site_loads_no_statistics_and_no_plotting_library() -> None:
+    code = (
+        "import sys, study.site.app; "
+        "bad = ('matplotlib', 'scipy', 'analysis.inference', 'analysis.charts', 'analysis.publish')"
+        "; print([name for name in bad if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
 
 
 def test_another_researcher_still_sees_nothing(site: Any, ada: Any) -> None:
