@@ -29,6 +29,7 @@ from analysis.estimates.linkage import Linkage, linkage_of
 from analysis.estimates.noticing import Noticing
 from analysis.estimates.preference import Preference, preference_of
 from analysis.estimates.realism import Realism
+from analysis.estimates.separation import separation_warnings
 from analysis.ordering import lod_ranks
 from analysis.reading import Tables
 
@@ -92,13 +93,16 @@ class Inference:
 
     def warnings(self) -> list[str]:
         """Return what the fits warn of, by model."""
-        fits = [("realism", self.realism), ("preference", self.preference)]
-        return [
-            f"The model of {name}: {warning}."
-            for name, model in [*fits, ("noticing", self.noticing)]
+        models = {"realism": self.realism, "preference": self.preference}
+        told = [
+            (name, warning)
+            for name, model in {**models, "noticing": self.noticing}.items()
             if model is not None
             for warning in model.fit.warnings
         ]
+        if self.realism is not None:
+            told += [("realism", warning) for warning in separation_warnings(self.realism)]
+        return [f"The model of {name}: {warning}." for name, warning in told]
 
 
 def infer(

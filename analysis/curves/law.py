@@ -1,9 +1,9 @@
 """The law of sizes: a difference shows as A Phi((x - m) / w), x the log2 of the iris's size.
 
 Every LoD has its own greatest difference A, size m at which half of it shows, and octaves w over
-which it comes; where a handful of sizes says little of them, the priors do (``models.priors``: w
-about one octave). What a person answers given that difference is an ordinal model, with the
-person's own criterion.
+which it comes; where a handful of sizes says little of them, the priors do: w is about one octave
+for what is noticed, and about two, but less certain, for what looks less real. What a person
+answers given that difference is an ordinal model, with the person's own criterion.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ from analysis.models.predictors import Predictor, Saturating
 from analysis.models.priors import PRIORS
 
 Floats = NDArray[np.float64]
+SLOW: Final = (float(np.log(2.0)), 0.8)  # prior of log w where realism is lost with size
 _HEIGHT: Final = 50.0  # greater differences than any answer could tell
 
 
@@ -130,14 +131,18 @@ def fit_law(
     best: str,
     sizes: Mapping[str, Floats],
     weights: Mapping[str, float] | None,
+    log_width: tuple[float, float] = PRIORS["log_width"],
 ) -> SizeLaw:
-    """Fit the law; ``weights`` let a participant count for less than one."""
+    """Fit the law; ``weights`` let a participant count for less than one.
+
+    ``log_width`` is the prior of log w: mean and standard deviation.
+    """
     given = weights or {}
     often = np.array([given.get(who, 1.0) for who in counted.people])
     found = fit(
         model,
         counted.counts,
-        priors={**PRIORS, "middle": measure.middle},
+        priors={**PRIORS, "middle": measure.middle, "log_width": log_width},
         weights=often if weights else None,
         start=_start(model, counted.counts, measure),
     )

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analysis.curves.curve import ONE_JOD, PREFERRED, SizeCurve, band, make_threshold, with_interval
-from analysis.curves.law import SizeLaw, count_rows, fit_law, law_predictor, sizes_by_lod
+from analysis.curves.law import SLOW, SizeLaw, count_rows, fit_law, law_predictor, sizes_by_lod
 from analysis.curves.noticed import against_best
 from analysis.curves.observed import share_points
 from analysis.curves.sizes import Measure, along
@@ -47,7 +47,9 @@ def preferred_law(
     law = law_predictor(counted.table, "lod", tuple(sizes))
     sign = np.where(counted.table["is_right"].to_numpy(dtype=bool), 1.0, -1.0)
     model = OrdinalModel(Scaled(law, sign), 3, (LENIENCY,))
-    return fit_law(model, counted, measure, rng, best=best, sizes=sizes, weights=weights)
+    return fit_law(
+        model, counted, measure, rng, best=best, sizes=sizes, weights=weights, log_width=SLOW
+    )
 
 
 def preferred_curves(

@@ -18,7 +18,15 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from analysis.curves.curve import MARGIN, RATED, SizeCurve, band, make_threshold
-from analysis.curves.law import Counted, SizeLaw, count_rows, fit_law, law_predictor, sizes_by_lod
+from analysis.curves.law import (
+    SLOW,
+    Counted,
+    SizeLaw,
+    count_rows,
+    fit_law,
+    law_predictor,
+    sizes_by_lod,
+)
 from analysis.curves.observed import loss_points
 from analysis.curves.sizes import Measure, along, with_size
 from analysis.decision.margins import Margins
@@ -64,7 +72,9 @@ def rated_law(
     counted = count_rows(coded, keys, coded["rating"] - low, high - low + 1)
     predictor = _predictor(counted, tuple(sizes), nuisances)
     model = OrdinalModel(predictor, high - low + 1, (LENIENCY,))
-    law = fit_law(model, counted, measure, rng, best=best, sizes=sizes, weights=weights)
+    law = fit_law(
+        model, counted, measure, rng, best=best, sizes=sizes, weights=weights, log_width=SLOW
+    )
     return RatedLaw(law, tuple(sorted(counted.table[_OCTAVE].unique().tolist())))
 
 

@@ -11,12 +11,15 @@ from analysis.models.fitting import OrdinalFit
 
 Floats = NDArray[np.float64]
 DRAWS: Final = 4000
-_FARTHEST: Final = 50.0  # on the latent scale nothing lies there; logarithms stay numbers
+_FARTHEST: Final = 50.0  # on the latent scale nothing lies there
+_GREATEST_LOG: Final = 4.0  # two people's draws of a spread have no end: exp(exp(50)) is no number
 
 
 def draw(found: OrdinalFit, rng: np.random.Generator, *, people: int) -> Floats:
     """Draw parameters (DRAWS, n_parameters) from Student's t about a fit."""
-    return draw_about(found.parameters, found.covariance, rng, people=people)
+    drawn = draw_about(found.parameters, found.covariance, rng, people=people)
+    logs = [kind.startswith("log") for kind in found.model.kinds]
+    return np.where(logs, np.minimum(drawn, _GREATEST_LOG), drawn)
 
 
 def draw_about(
