@@ -29,7 +29,7 @@ from study.load.wire import Wire
 
 THESIS = Path(design.__file__).parent / "definitions" / "thesis.toml"
 STEPS = ("page", "consent", "form", "play", "answer", "questionnaire")
-PATIENCE_S = 300
+PATIENCE_S = 900  # a loaded machine is no failure
 
 
 @dataclass
