@@ -19,13 +19,21 @@ SEED: Final = 20120831  # of the draws; the same tables give the same report
 
 
 def decisions_of(
-    tables: Tables, *, margins: Margins | None = None, weights: dict[str, float] | None = None
+    tables: Tables,
+    *,
+    margins: Margins | None = None,
+    weights: dict[str, float] | None = None,
+    near: tuple[Realism | None, Noticing | None] = (None, None),
 ) -> tuple[Decision, ...]:
-    """Return the decisions of ``infer`` alone: fits nothing that they do not rest on."""
+    """Return the decisions of ``infer`` alone: fits nothing that they do not rest on.
+
+    ``near`` are fits to nearly the same tables, from which these are found sooner.
+    """
     margins = margins or tables.margins
     if count_people(tables) < 2:
         return ()
-    return decide_by(tables, fit_realism(tables, weights), fit_noticing(tables, weights), margins)
+    realism = fit_realism(tables, weights, near=near[0])
+    return decide_by(tables, realism, fit_noticing(tables, weights, near=near[1]), margins)
 
 
 def count_people(tables: Tables) -> int:
@@ -38,7 +46,9 @@ def rng_of(model: str) -> np.random.Generator:
     return np.random.default_rng([SEED, crc32(model.encode())])
 
 
-def fit_realism(tables: Tables, weights: dict[str, float] | None) -> Realism | None:
+def fit_realism(
+    tables: Tables, weights: dict[str, float] | None, *, near: Realism | None = None
+) -> Realism | None:
     """Fit the realism of every LoD at every distance; None without ratings."""
     if not len(answered(tables.ratings)):
         return None
@@ -48,12 +58,16 @@ def fit_realism(tables: Tables, weights: dict[str, float] | None) -> Realism | N
         scale=tables.scale,
         experts=experts_of(tables),
         weights=weights,
+        near=near,
     )
 
 
-def fit_noticing(tables: Tables, weights: dict[str, float] | None) -> Noticing | None:
+def fit_noticing(
+    tables: Tables, weights: dict[str, float] | None, *, near: Noticing | None = None
+) -> Noticing | None:
     """Fit who notices which pair; None without pairs of equal LoDs."""
-    return noticing_of(tables.comparisons, tables.ratings, rng_of("noticing"), weights=weights)
+    rng = rng_of("noticing")
+    return noticing_of(tables.comparisons, tables.ratings, rng, weights=weights, near=near)
 
 
 def decide_by(

@@ -11,7 +11,6 @@ from typing import Final
 
 import numpy as np
 import pandas as pd
-from scipy.stats import kendalltau
 
 from analysis.agreement import Coefficient, intraclass
 from analysis.descriptive import t_interval
@@ -73,9 +72,17 @@ def person_taus(ratings: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for who, own in table.dropna().groupby("person", sort=True):
         varies = len(own) >= _FEW and own["rating"].nunique() > 1 and own["others"].nunique() > 1
-        tau = kendalltau(own["others"], own["rating"]).statistic if varies else np.nan
+        tau = tau_b(own["others"].to_numpy(), own["rating"].to_numpy()) if varies else np.nan
         rows.append((shown.people[int(str(who))], len(own), tau))
     return pd.DataFrame(rows, columns=["participant", "ratings", "tau_b"])
+
+
+def tau_b(x: np.ndarray, y: np.ndarray) -> float:
+    """Return Kendall's tau-b of two rows of numbers, over all pairs; nan where one never varies."""
+    above = np.triu_indices(len(x), 1)
+    one, other = (np.sign(np.subtract.outer(values, values)[above]) for values in (x, y))
+    norm = np.sqrt(float((one**2).sum()) * float((other**2).sum()))
+    return float(one @ other) / norm if norm else float("nan")
 
 
 def _without_bias(shown: Presented) -> Presented:

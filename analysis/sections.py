@@ -15,7 +15,6 @@ from analysis.claims import claims_table
 from analysis.coding import ManualCodes, code_remarks, mention_rates, unused_codes
 from analysis.deciding import decisions_of
 from analysis.inference import SEED, Inference
-from analysis.models.ordinal import LENIENCY
 from analysis.observer_tables import (
     flag_sentences,
     observers_table,
@@ -32,7 +31,8 @@ from analysis.screening.weights import observer_weights
 from analysis.text_tables import claims_report, mentions_table, text_sentences
 
 _MOST_ALONE: Final = 12
-_MOST_RATINGS: Final = 20_000  # beyond, every refit takes too long for a report
+_MANY_RATINGS: Final = 20_000  # beyond, people are left out together and not one by one
+_MOST_RATINGS: Final = 200_000  # beyond, even one more fit takes too long for a report
 
 
 @dataclass(frozen=True)
@@ -104,13 +104,16 @@ def _sensitivity(
     realism = inference.realism
     if realism is None or realism.stimuli.counts.total > _MOST_RATINGS:
         return None
-    is_quick = realism.fit.model.effects == (LENIENCY,)
+    is_quick = realism.stimuli.counts.total <= _MANY_RATINGS
+    near = (realism, inference.noticing)
     return verdict_sensitivity(
         tables,
         flags,
         usual=inference.decisions,
         weights=weights,
-        decide=lambda own, w: decisions_of(own, margins=inference.margins, weights=w or None),
+        decide=lambda own, w: decisions_of(
+            own, margins=inference.margins, weights=w or None, near=near
+        ),
         most=_MOST_ALONE if is_quick else 0,
     )
 

@@ -86,10 +86,12 @@ def noticing_of(
     rng: np.random.Generator,
     *,
     weights: dict[str, float] | None = None,
+    near: Noticing | None = None,
 ) -> Noticing | None:
     """Fit the model to the answers that count; None without answers to pairs of equal LoDs.
 
-    ``weights`` let a participant count for less than one.
+    ``weights`` let a participant count for less than one; ``near`` is a fit to nearly the same
+    answers, from which this one is found sooner.
     """
     rows = comparisons[comparisons["noticed"].notna() & ~comparisons["is_practice"]]
     is_catch = (rows["left_lod"] == rows["right_lod"]).to_numpy()
@@ -119,6 +121,12 @@ def noticing_of(
     design = np.vstack([np.zeros(len(pairs)), np.eye(len(pairs))])
     model = OrdinalModel(Linear(design, tuple(" ".join(pair) for pair in pairs)), 3, (LENIENCY,))
     often = np.array([(weights or {}).get(str(who), 1.0) for who in people])
-    found = fit(model, counts, priors=PRIORS, weights=often if weights else None)
+    found = fit(
+        model,
+        counts,
+        priors=PRIORS,
+        weights=often if weights else None,
+        near=near.fit if near else None,
+    )
     draws = draw(found, rng, people=len(people))
     return Noticing(found, draws, tuple(pairs), int(is_catch.sum()))

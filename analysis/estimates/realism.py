@@ -106,10 +106,12 @@ def realism_of(
     scale: tuple[int, int],
     experts: dict[str, bool] | None = None,
     weights: dict[str, float] | None = None,
+    near: Realism | None = None,
 ) -> Realism:
     """Fit the model to a ratings table.
 
-    ``weights`` let a participant count for less than one. People's scatter and end-avoidance are
+    ``weights`` let a participant count for less than one; ``near`` is a fit to nearly the same
+    ratings, from which this one is found sooner. People's scatter and end-avoidance are
     modelled where they gave enough ratings each. Raises ValueError without any rating.
     """
     stimuli = stimuli_of(ratings, scale=scale, experts=experts)
@@ -122,7 +124,13 @@ def realism_of(
     )
     given = weights or {}
     often = np.array([given.get(who, 1.0) for who in stimuli.people])
-    found = fit(model, counts, priors=PRIORS, weights=often if weights else None)
+    found = fit(
+        model,
+        counts,
+        priors=PRIORS,
+        weights=often if weights else None,
+        near=near.fit if near else None,
+    )
     return Realism(stimuli, found, draw(found, rng, people=counts.people))
 
 

@@ -81,13 +81,13 @@ def fit(
     """Fit a model to counts; without ``priors`` by maximum likelihood.
 
     ``weights`` (n_people,) are those of a bootstrap. ``near`` is a fit of the same model to nearly
-    the same answers, from where a few steps lead to this one's; ``start`` are parameters, and a
-    ``grid`` is taken as it is. Raises ValueError for counts of another shape, or with a category
-    that nobody used when there are no priors.
+    the same answers, from where a few steps lead to this one's; one of other parameters is no help.
+    ``start`` are parameters, and a ``grid`` is taken as it is. Raises ValueError for counts of
+    another shape, or with a category that nobody used when there are no priors.
     """
     _check(model, counts, priors)
     problem = _Problem(model, counts, priors, weights)
-    if near is not None:
+    if near is not None and near.model.names == model.names:
         return _refit(problem, near)
     parameters = _start(model, counts) if start is None else start
     inverse = None
@@ -122,8 +122,6 @@ def _on_fine_grid(problem: _Problem, parameters: Floats, inverse: Floats | None)
 
 def _refit(problem: _Problem, near: OrdinalFit) -> OrdinalFit:
     """Step from an earlier fit to this one's optimum, on the earlier one's grid."""
-    if near.model.names != problem.model.names:
-        raise ValueError(f"near: a fit of {near.model.names}; wanted {problem.model.names}")
     target = problem.target(near.grid)
     parameters = climb(target, near.parameters, inverse=near.covariance)[0]
     return problem.finish(near.grid, parameters, list(near.warnings))

@@ -28,7 +28,9 @@ _SPACING: Final[Mapping[str, tuple[float, float]]] = {
 _REACH: Final[Mapping[str, float]] = {LENIENCY: 5.5, INCONSISTENCY: 4.0, STYLE: 4.0}
 _FEWEST: Final[Mapping[str, int]] = {LENIENCY: 21, INCONSISTENCY: 7, STYLE: 7}
 _COARSE: Final[Mapping[str, int]] = {LENIENCY: 31, INCONSISTENCY: 7, STYLE: 7}
-_TOLERANCE: Final = (1e-4, 0.05)  # in log-likelihood: with one effect, with more
+_TOLERANCE: Final = (1e-4, 0.05)  # in log-likelihood of 200 people: with one effect, with more
+_PEOPLE: Final = 200.0  # of many more people the curvature grows as their errors do
+_FINER: Final = 1.5  # the error falls faster than any power of the spacing
 _UNVISITED: Final = 1e-7  # a node where nobody is more likely than this is left out
 _MOST_NODES, _MOST_CELLS = 1281, 40_000  # in one direction, and in all
 
@@ -66,18 +68,19 @@ def refined_grid(
     *,
     weights: Floats | None = None,
 ) -> Grid | None:
-    """Return a whole finer grid where halving a spacing changes the log-likelihood, else None.
+    """Return a whole finer grid where halving a spacing would change the log-likelihood, else None.
 
-    Halving takes the nodes half-way only: the others are known.
+    To know that, the nodes half-way are enough: the others are known.
     """
     own = person_log_likelihoods(model, parameters, counts, grid)
     often = np.ones(len(own)) if weights is None else weights
+    tolerance = _TOLERANCE[min(len(grid.counts) - 1, 1)] * max(1.0, counts.people / _PEOPLE)
     finer = list(grid.counts)
     for place, count in enumerate(grid.counts):
         middle = person_log_likelihoods(model, parameters, counts, grid.between(place))
         change = float(often @ (np.logaddexp(own, middle) - np.log(2.0) - own))
-        if abs(change) > _TOLERANCE[min(len(finer) - 1, 1)]:
-            finer[place] = 2 * count - 1
+        if abs(change) > tolerance:
+            finer[place] = 2 * int(np.ceil(_FINER * (count - 1) / 2)) + 1
     return _grid(model, finer) if finer != list(grid.counts) else None
 
 

@@ -40,7 +40,7 @@ def climb(
         near = _NEAR / max(float(errors.max(initial=0.0)), _NEAR) / scale
         options = options | {"gtol": max(near, _CLOSE), "hess_inv0": _positive(inverse * scale)}
     found = minimize(scaled, start, jac=True, method="BFGS", options=options)
-    return np.asarray(found.x, dtype=float), _positive(found.hess_inv) / scale
+    return np.asarray(found.x, dtype=float), _positive(np.asarray(found.hess_inv)) / scale
 
 
 def _positive(matrix: Floats) -> Floats:
