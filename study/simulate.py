@@ -15,7 +15,8 @@ from study.checking import pass_checks
 from study.data import answers, arms, consents, pauses, studies, trials, views
 from study.data import progress as steps
 from study.data.database import Database
-from study.data.participants import Participant, enrol
+from study.data.enrolment import enrol
+from study.data.participants import Participant
 from study.data.studies import Study
 from study.data.trials import Trial
 from study.design.arms import all_arms

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from study.cli import main
-from study.data import links, participants, studies
+from study.data import enrolment, links, participants, studies
 from study.data.database import Database, open_database
 from study.design.definition import read_definition
 
@@ -64,7 +64,7 @@ def test_somebody_who_asks_is_erased_by_pseudonym(
 ) -> None:
     db = opened(folder)
     study = studies.register(db, read_definition("thesis"))
-    name = participants.enrol(db, study).participant.public_id
+    name = enrolment.enrol(db, study).participant.public_id
     monkeypatch.setattr("builtins.input", lambda _question: "no")
     assert main(["erase", name, "--data", "data"]) == 1
     assert "nothing was erased" in capsys.readouterr().err

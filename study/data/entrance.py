@@ -16,7 +16,8 @@ from sqlalchemy.orm import Session
 
 from study.data.consents import has_gone_on
 from study.data.database import Database
-from study.data.participants import Participant, enrol, record_of, token_hash
+from study.data.enrolment import enrol
+from study.data.participants import Participant, record_of, token_hash
 from study.data.refusals import FormUsedError, LinkUsedError
 from study.data.schema import LinkRow, ParticipantRow, StudyRow
 from study.data.studies import Study

@@ -1,16 +1,14 @@
-"""Participants: enrolled with a secret token, known by a random pseudonym, erased on request."""
+"""Participants: known by their token or pseudonym, here as long as they give a sign of life."""
 
 from __future__ import annotations
 
 import hashlib
-import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any, Final
 
-import numpy as np
-from sqlalchemy import func, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
@@ -22,7 +20,6 @@ from study.data.studies import Study
 IDLE: Final = timedelta(minutes=30)
 """A sitting ends, and an arm's lease runs out, after this long without a sign of life."""
 SEEN_AGAIN: Final = timedelta(seconds=15)  # do not write "still here" more often than this
-_ALPHABET: Final = "23456789abcdefghjkmnpqrstvwxyz"  # nothing that reads like something else
 
 
 @dataclass(frozen=True)
@@ -45,51 +42,6 @@ class Participant:
     completed_at: datetime | None
     outcome: str | None
     arrival: dict[str, Any] | None
-
-
-@dataclass(frozen=True)
-class Enrolment:
-    """A new participant and the token that proves who they are; only its hash is stored."""
-
-    participant: Participant
-    token: str
-
-
-def enrol(
-    db: Database,
-    study: Study,
-    *,
-    simulated: bool = False,
-    rng: np.random.Generator | None = None,
-    language: str | None = None,
-    recruited_by: str = "link",
-    device: Mapping[str, Any] | None = None,
-    token: str | None = None,
-) -> Enrolment:
-    """Add a participant. ``device`` describes screen and browser; the table's column names are
-    ``screen_width``, ``screen_height``, ``pixel_ratio`` and ``user_agent_family``.
-
-    With ``rng`` pseudonym and seed can be repeated; the token cannot, unless it is given.
-    """
-    drawn = rng or np.random.default_rng(secrets.randbits(128))
-    token = token or secrets.token_urlsafe(32)
-    now = db.now()
-    with db.writing() as session:
-        row = ParticipantRow(
-            study_id=study.id,
-            public_id=_free_pseudonym(session, drawn),
-            token_hash=token_hash(token),
-            simulated=simulated,
-            language=language or study.definition.language,
-            seed=int(drawn.integers(2**62)),
-            recruited_by=recruited_by[:60],
-            created_at=now,
-            last_seen_at=now,
-        )
-        session.add(row)
-        session.flush()
-        _open_session(session, row, now, read_device(device or {}), number=1)
-        return Enrolment(record_of(row), token)
 
 
 def by_token(db: Database, token: str) -> Participant | None:
@@ -160,7 +112,7 @@ def touch(session: Session, row: ParticipantRow, now: datetime) -> SessionRow:
         .limit(1)
     ).one()
     if now - sitting.last_seen_at > IDLE:
-        sitting = _open_session(session, row, now, sitting.device, number=sitting.number + 1)
+        sitting = open_sitting(session, row, now, sitting.device, number=sitting.number + 1)
     elif now - sitting.last_seen_at < SEEN_AGAIN:
         return sitting
     sitting.last_seen_at = row.last_seen_at = now
@@ -174,23 +126,16 @@ def record_of(row: ParticipantRow) -> Participant:
     return Participant(**{name: getattr(row, name) for name in Participant.__dataclass_fields__})
 
 
-def _open_session(
+def open_sitting(
     session: Session, row: ParticipantRow, now: datetime, device: Mapping[str, Any], *, number: int
 ) -> SessionRow:
+    """Add a sitting."""
     sitting = SessionRow(
         participant_id=row.id, number=number, device=dict(device), started_at=now, last_seen_at=now
     )
     session.add(sitting)
     session.flush()
     return sitting
-
-
-def _free_pseudonym(session: Session, rng: np.random.Generator) -> str:
-    while True:
-        name = "p-" + "".join(_ALPHABET[i] for i in rng.integers(len(_ALPHABET), size=8))
-        taken = select(func.count()).where(ParticipantRow.public_id == name)
-        if not session.scalar(taken):
-            return name
 
 
 def token_hash(token: str) -> str:

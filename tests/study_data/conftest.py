@@ -13,7 +13,7 @@ import pytest
 
 from renderer.manifest import ClipRecord, Manifest, read_manifest, write_manifest
 from renderer.sources import code_version
-from study.data import answers, arms, consents, participants, progress, studies, views
+from study.data import answers, arms, consents, enrolment, progress, studies, views
 from study.data.database import Database, open_database
 from study.data.participants import Participant
 from study.data.studies import Study
@@ -193,8 +193,8 @@ def walk(db: Database, study: Study) -> Walk:
 
 
 def new_walk(db: Database, study: Study, *, seed: int = 1, **facts: Any) -> Walk:
-    enrolment = participants.enrol(db, study, rng=np.random.default_rng(seed), **facts)
-    return Walk(db, study, enrolment.participant, enrolment.token)
+    new = enrolment.enrol(db, study, rng=np.random.default_rng(seed), **facts)
+    return Walk(db, study, new.participant, new.token)
 
 
 @pytest.fixture

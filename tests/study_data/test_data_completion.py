@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from sqlalchemy import update
 
-from study.data import completion, dashboard, participants, studies
+from study.data import completion, dashboard, enrolment, participants, studies
 from study.data.database import Database
 from study.data.refusals import NotReachedError
 from study.data.schema import TrialRow
@@ -61,8 +61,8 @@ def test_a_code_for_all_is_no_ones_own(db: Database, raw: dict[str, Any], enrol_
 
 
 def _enrolled(db: Database, study: Study) -> tuple[participants.Participant, str]:
-    enrolment = participants.enrol(db, study)
-    return enrolment.participant, enrolment.token
+    new = enrolment.enrol(db, study)
+    return new.participant, new.token
 
 
 def test_nobody_is_screened_out_in_the_middle(db: Database, study: Study, walk: Any) -> None:

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from sqlalchemy import text
 
-from study.data import participants
+from study.data import enrolment, participants
 from study.data.database import Database
 from study.data.devices import read_device
 from study.data.studies import Study
 
 
 def test_a_token_leads_to_its_participant_and_to_nobody_else(db: Database, study: Study) -> None:
-    first, second = (participants.enrol(db, study) for _ in range(2))
+    first, second = (enrolment.enrol(db, study) for _ in range(2))
     assert participants.by_token(db, first.token) == first.participant
     assert participants.by_token(db, second.token) == second.participant
     assert participants.by_token(db, first.token[:-1]) is None
@@ -24,7 +24,7 @@ def test_a_token_leads_to_its_participant_and_to_nobody_else(db: Database, study
 
 
 def test_the_database_holds_no_token(db: Database, study: Study) -> None:
-    token = participants.enrol(db, study).token
+    token = enrolment.enrol(db, study).token
     with db.reading() as session:
         stored = str(session.execute(text("SELECT * FROM participants")).all())
     assert len(token) >= 43
@@ -32,11 +32,11 @@ def test_the_database_holds_no_token(db: Database, study: Study) -> None:
 
 
 def test_pseudonym_and_seed_can_be_repeated_but_not_the_token(db: Database, study: Study) -> None:
-    first = participants.enrol(db, study, rng=np.random.default_rng(3))
+    first = enrolment.enrol(db, study, rng=np.random.default_rng(3))
     with db.writing() as session:
         session.execute(text("DELETE FROM sessions"))
         session.execute(text("DELETE FROM participants"))
-    again = participants.enrol(db, study, rng=np.random.default_rng(3))
+    again = enrolment.enrol(db, study, rng=np.random.default_rng(3))
     assert again.participant.public_id == first.participant.public_id
     assert again.participant.seed == first.participant.seed
     assert again.token != first.token
@@ -44,7 +44,7 @@ def test_pseudonym_and_seed_can_be_repeated_but_not_the_token(db: Database, stud
 
 def test_a_taken_pseudonym_is_not_given_twice(db: Database, study: Study) -> None:
     names = {
-        participants.enrol(db, study, rng=np.random.default_rng(3)).participant.public_id
+        enrolment.enrol(db, study, rng=np.random.default_rng(3)).participant.public_id
         for _ in range(3)
     }
     assert len(names) == 3

@@ -6,7 +6,17 @@ from typing import Any
 
 import pytest
 
-from study.data import arms, completion, consents, events, participants, progress, studies, trials
+from study.data import (
+    arms,
+    completion,
+    consents,
+    enrolment,
+    events,
+    participants,
+    progress,
+    studies,
+    trials,
+)
 from study.data.database import Database
 from study.data.refusals import NotReachedError
 from study.data.studies import Study
@@ -144,7 +154,7 @@ def test_a_study_without_questions_about_you_goes_on_to_the_instructions(
     db: Database, raw: dict[str, Any]
 ) -> None:
     other = studies.register(db, parse_definition({**raw, "key": "other", "about": []}))
-    person = participants.enrol(db, other).participant
+    person = enrolment.enrol(db, other).participant
     consents.give_consent(db, person, key="c")
     assert progress.current_step(db, person).name == "instructions"
     progress.finish_instructions(db, person, key="i")
