@@ -22,7 +22,7 @@ from sqlalchemy.orm import Session
 
 from study.data.commits import GroupCommit
 from study.data.engines import DRIVER, make_engine, reading_engine
-from study.data.errands import Make, look, run
+from study.data.errands import Eyes, Make, look, run
 from study.data.refusals import UnusablePayloadError
 
 T = TypeVar("T")
@@ -96,6 +96,10 @@ class Database:
             return look(outer[0].connection(), make)
         with self._reading_engine.begin() as connection:
             return look(connection, make)
+
+    def eyes(self) -> Eyes:
+        """Return a connection of one's own for reading, one errand after the other."""
+        return Eyes(self._reading_engine.connect())
 
     @contextmanager
     def _joined(

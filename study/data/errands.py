@@ -67,6 +67,26 @@ def look(connection: Connection, make: Make[T]) -> T:
     return found
 
 
+class Eyes:
+    """A connection that is kept for reading: one state of the database for each errand."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+
+    def look(self, make: Make[T]) -> T:
+        """Run one errand that only reads; raises its error."""
+        driver = _driver(self._connection)
+        driver.execute("BEGIN")
+        try:
+            return look(self._connection, make)
+        finally:
+            driver.execute("COMMIT")
+
+    def close(self) -> None:
+        """Give the connection back."""
+        self._connection.close()
+
+
 def _apart(connection: Connection, make: Make[Any]) -> Outcome:
     """Run one errand so that what it wrote can be taken back."""
     driver = _driver(connection)

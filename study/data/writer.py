@@ -19,7 +19,7 @@ from weakref import WeakKeyDictionary
 from sqlalchemy import Connection
 
 from study.data.database import Database
-from study.data.errands import Make, Outcome, run
+from study.data.errands import Eyes, Make, Outcome, run
 
 T = TypeVar("T")
 MOST: Final = 100
@@ -32,6 +32,7 @@ class _Line:
 
     waiting: list[tuple[Make[Any], asyncio.Future[Any]]] = field(default_factory=list)
     task: asyncio.Task[None] | None = None
+    eyes: Eyes | None = None
     beside: ThreadPoolExecutor = field(
         default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="writer")
     )
@@ -51,10 +52,7 @@ class Writer:
 
     async def write(self, make: Make[T]) -> T:
         """Run an errand among those of others; raises its own error, or why nothing was stored."""
-        loop = asyncio.get_running_loop()
-        line = self._lines.get(loop)
-        if line is None:
-            line = self._lines.setdefault(loop, _Line())
+        loop, line = asyncio.get_running_loop(), self._line()
         future: asyncio.Future[T] = loop.create_future()
         line.waiting.append((make, future))
         if line.task is None:
@@ -63,14 +61,23 @@ class Writer:
 
     async def look(self, make: Make[T]) -> T:
         """Run an errand that only reads: here on SQLite, in a thread where a server is asked."""
-        if self._db.group:
-            return self._db.look(make)
-        return await asyncio.to_thread(self._db.look, make)
+        if self._db.group is None:
+            return await asyncio.to_thread(self._db.look, make)
+        line = self._line()
+        if line.eyes is None:
+            line.eyes = self._db.eyes()
+        return line.eyes.look(make)
 
     def close(self) -> None:
         """Let the last batches end."""
         for line in list(self._lines.values()):
             line.beside.shutdown()
+            if line.eyes is not None:
+                line.eyes.close()
+
+    def _line(self) -> _Line:
+        loop = asyncio.get_running_loop()
+        return self._lines.get(loop) or self._lines.setdefault(loop, _Line())
 
     async def _work(self, line: _Line) -> None:
         """Run batch after batch until nobody waits."""

@@ -51,7 +51,10 @@ log = logging.getLogger("ocularist.site")
 # from the one that writes: with 40 a crowd was answered half as fast (docs/load.md).
 THREADS: Final = 16
 FOR_SCRIPTS = ("/events", "/preparing/state")
+# In the order in which they are asked for a path: what comes most stands first.
 ROOMS = (
+    news,
+    trial,
     beginning,
     invitations,
     consent,
@@ -60,9 +63,7 @@ ROOMS = (
     calibration,
     eyesight,
     preparing,
-    trial,
     pause,
-    news,
     leaving,
     ending,
     clips,

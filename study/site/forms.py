@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import Final
+from urllib.parse import parse_qsl
 
-from fastapi import Request
+from fastapi import HTTPException, Request
 
 from study.design.questions import MultipleQuestion, Question, each_asked
 
 # A whole questionnaire of the longest texts stays far below; more is no form of ours.
 MAX_FORM_BYTES: Final = 256 * 1024
+MAX_FIELDS: Final = 200
+PLAIN: Final = "application/x-www-form-urlencoded"
 Fields = Mapping[str, Sequence[str]]
 
 
@@ -32,11 +35,32 @@ def _is_pair(first: str, second: str) -> bool:
 
 async def read_form(request: Request) -> dict[str, list[str]]:
     """Read a posted form into field -> values; files are no answer and are left out."""
-    form = await request.form(max_files=0, max_fields=200, max_part_size=MAX_FORM_BYTES)
+    if request.headers.get("content-type", "").startswith(PLAIN):
+        return _plain_form(await request.body())
+    form = await request.form(max_files=0, max_fields=MAX_FIELDS, max_part_size=MAX_FORM_BYTES)
     fields: dict[str, list[str]] = {}
     for name, value in form.multi_items():
         if isinstance(value, str):
             fields.setdefault(name, []).append(value)
+    return fields
+
+
+def _plain_form(body: bytes) -> dict[str, list[str]]:
+    """Read what a browser sends of a form without files."""
+    fields: dict[str, list[str]] = {}
+    try:
+        pairs = parse_qsl(
+            body.decode("latin-1"),
+            keep_blank_values=True,
+            errors="replace",
+            max_num_fields=MAX_FIELDS,
+        )
+    except ValueError:
+        raise HTTPException(400) from None
+    for name, value in pairs:
+        if len(value) > MAX_FORM_BYTES:
+            raise HTTPException(400)
+        fields.setdefault(name, []).append(value)
     return fields
 
 

@@ -73,6 +73,8 @@ def _environment(version: str) -> jinja2.Environment:
     pages = jinja2.Environment(
         loader=jinja2.FileSystemLoader(resource_folder("templates")),
         autoescape=True,
+        # They change with the program alone; asking the disk would cost as much as half a page.
+        auto_reload=False,
         # A name that is missing in a template is a fault of ours, not an empty place on the page.
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -83,10 +85,15 @@ def _environment(version: str) -> jinja2.Environment:
     return pages
 
 
-async def place_of(request: Request) -> Place:
+def place_in(request: Request) -> Place:
     """Return the site that a request came to."""
     found: Place = request.app.state.place
     return found
+
+
+async def place_of(request: Request) -> Place:
+    """Return the same as a dependency."""
+    return place_in(request)
 
 
 Here = Annotated[Place, Depends(place_of)]

@@ -24,7 +24,7 @@ from study.site.asker import Asker, by_cookie, found, locked, study_of
 from study.site.forms import Fields, answers_in, first, read_form
 from study.site.frame import shared
 from study.site.media import clip_url
-from study.site.place import Here, Place
+from study.site.place import Place, place_in
 from study.site.problems import problem_page
 from study.site.time_left import minutes_left
 
@@ -34,8 +34,9 @@ LONGEST_MS = 24 * 3600 * 1000
 
 
 @router.get("/trial/{position}")
-async def trial(request: Request, here: Here, position: int) -> Response:
+async def trial(request: Request, position: int) -> Response:
     """Show the participant's current trial; any other leads there."""
+    here = place_in(request)
     asker = by_cookie(request, here)
     who, stood = await here.writer.look(partial(_look, request, here, asker))
     visitor = as_visitor(request, here, participants.record_of(who), asker.token)
@@ -135,13 +136,13 @@ def _steps(every: tuple[Trial, ...], current: Trial) -> list[str]:
     ]
 
 
-def _to_come(here: Here, every: tuple[Trial, ...], current: Trial) -> list[str]:
+def _to_come(here: Place, every: tuple[Trial, ...], current: Trial) -> list[str]:
     """Return address and length of the clips that come later, for the preloader."""
     records = (here.clips.record(one.clip_id) for one in every if one.position > current.position)
     return [f"{clip_url(record)} {record.file_bytes}" for record in records if record is not None]
 
 
-def _missing(request: Request, here: Here, visitor: Visitor, found: Trial) -> Response:
+def _missing(request: Request, here: Place, visitor: Visitor, found: Trial) -> Response:
     """Stop visibly where a clip is not there: the dashboard shows it, a worker makes it again."""
     jobs.requeue(here.db, [found.clip_id])
     events.record(
@@ -157,8 +158,9 @@ def _missing(request: Request, here: Here, visitor: Visitor, found: Trial) -> Re
 
 
 @router.post("/trial/{position}")
-async def finish(request: Request, here: Here, position: int) -> Response:
+async def finish(request: Request, position: int) -> Response:
     """Store the whole questionnaire and go on; a trial that is over changes no more."""
+    here = place_in(request)
     asker = by_cookie(request, here)
     fields = await read_form(request)
     check_csrf(here.secret, asker.token, first(fields, "csrf"))

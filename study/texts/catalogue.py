@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from importlib import resources
 from typing import Any, Final
@@ -30,6 +30,8 @@ class Catalogue:
 
     tongue: Tongue
     texts: Mapping[str, Text]
+    _plain: dict[str, Markup] = field(default_factory=dict, compare=False)
+    _of_scripts: dict[str, dict[str, Text]] = field(default_factory=dict, compare=False)
 
     def text(self, key: str, /, **values: object) -> str:
         """Return a text with its places filled; raises KeyError for a key or place unknown."""
@@ -37,8 +39,13 @@ class Catalogue:
 
     def markup(self, key: str, /, **values: object) -> Markup:
         """Return a text for a page: it and its values are escaped, but for those marked safe."""
+        if not values and key in self._plain:
+            return self._plain[key]
         sentence = escape(self._sentence(key, values))
-        return sentence.format(**self._written(values))
+        said = sentence.format(**self._written(values))
+        if not values:
+            self._plain[key] = said
+        return said
 
     def _sentence(self, key: str, values: Mapping[str, object]) -> str:
         found = self.texts[key]
@@ -58,11 +65,13 @@ class Catalogue:
 
     def of_scripts(self, page: str) -> dict[str, Text]:
         """Return what the scripts of a page say: ``all.*`` and the page's own."""
-        return {
-            key.removeprefix(f"{SCRIPTS}."): found
-            for key, found in self.texts.items()
-            if key.startswith((f"{SCRIPTS}.all.", f"{SCRIPTS}.{page}."))
-        }
+        if page not in self._of_scripts:
+            self._of_scripts[page] = {
+                key.removeprefix(f"{SCRIPTS}."): found
+                for key, found in self.texts.items()
+                if key.startswith((f"{SCRIPTS}.all.", f"{SCRIPTS}.{page}."))
+            }
+        return self._of_scripts[page]
 
 
 @lru_cache(maxsize=64)

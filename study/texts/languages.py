@@ -38,11 +38,12 @@ class Tongue:
         Codes, clocks and number fields show European digits in every language; one page should not
         mix two sets.
         """
-        return str(
-            format_decimal(
-                value, locale=self.locale, group_separator=False, numbering_system="latn"
-            )
-        )
+        return _number(self.locale, value)
+
+
+@lru_cache(maxsize=4096, typed=True)
+def _number(locale: Locale, value: float) -> str:
+    return str(format_decimal(value, locale=locale, group_separator=False, numbering_system="latn"))
 
 
 @lru_cache(maxsize=64)
