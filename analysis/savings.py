@@ -109,3 +109,22 @@ def _error(row: pd.Series) -> float:
     """Return the standard error of a row's median."""
     spread = _SD_OF_MAD * float(row["ms_mad"])
     return _MEDIAN_OF_MEAN * spread / float(np.sqrt(max(float(row["n"]), 1.0)))
+
+
+def frame_ms(costs: Costs, lod: str, *, px: float | None) -> tuple[float, float, float] | None:
+    """Return a frame's milliseconds per eye with 95 % interval, measured nearest to a size.
+
+    Without a size at the largest; None where the LoD was not timed.
+    """
+    rows = costs.table[costs.table["lod"] == lod]
+    if rows.empty:
+        return None
+    sizes = rows["iris_px"].to_numpy(dtype=float)
+    away = -sizes if px is None else np.abs(np.log(np.maximum(sizes, 1e-3) / px))
+    distance = str(rows["distance"].iloc[int(np.argmin(away))])
+    draws, middle = cost_draws(costs, distance, lod), costs.ms(distance, lod)
+    if draws is None or middle is None:
+        return None
+    low, high = np.quantile(draws, (0.025, 0.975))
+    told = [round(float(ms) / costs.eyes, 3) for ms in (middle, low, high)]
+    return told[0], told[1], told[2]

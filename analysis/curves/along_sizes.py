@@ -80,6 +80,6 @@ def _notes(tables: Tables, measure: Measure, best: str, made: list[SizeCurve]) -
     if not missing:
         return []
     return [
-        f"No curve over {measure.name} for {', '.join(missing)}: it takes two sizes at which "
-        f"{best} was shown too."
+        f"No curve over {measure.name} for {', '.join(missing)}: it takes answers at "
+        f"two sizes, and to {best} too."
     ]

@@ -1,16 +1,14 @@
 """``lod_policy.json``: up to which size of the iris each LoD is enough, for an engine to load.
 
 A LoD's limit is the size up to which it is shown, with the margins' confidence, to be neither rated
-lower nor noticed. LoDs are taken from the highest down, and none reaches further than a finer one:
-limits rise with the LoD, as an engine needs them. A curve also speaks of sizes between those shown,
-by its form; so no limit reaches a size at which the verdict by distance is another than
-"equivalent", nor beyond the largest size shown. docs/lod-by-pixels.md describes the file's form.
+lower nor noticed. Nothing is said of sizes that were not shown: no limit lies beyond the largest.
+docs/lod-by-pixels.md describes the file's form, which the renderer reads.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -18,22 +16,16 @@ import numpy as np
 
 from analysis.cost import Costs
 from analysis.curves.along_sizes import Curves
-from analysis.curves.curve import MARGIN, NOTICED, RATED, Threshold
-from analysis.curves.sizes import best_lod
-from analysis.decision.effects import Levels, levels_of
+from analysis.curves.curve import MARGIN, SHOWN
+from analysis.decision.effects import Levels
 from analysis.decision.margins import Margins
-from analysis.decision.verdicts import EQUIVALENT, Decision
-from analysis.descriptive import answered
-from analysis.ordering import lod_ranks
-from analysis.reading import Tables
-from analysis.savings import cost_draws
+from analysis.decision.size_limits import QUESTIONS, Verdicts, size_limits
+from analysis.savings import frame_ms
 from analysis.table import EFFECTS, STANDARD_LODS
-from analysis.versions import own_version
 from analysis.wording import percent
 
 SCHEMA: Final = 1
 HYSTERESIS, BAND = 0.1, 0.25  # as in the policy that comes with the renderer
-_QUESTIONS: Final = (RATED, NOTICED)
 
 
 @dataclass(frozen=True)
@@ -97,7 +89,7 @@ def policy_of(
     margins: Margins,
     costs: Costs | None,
     provenance: Mapping[str, Any],
-    verdicts: Mapping[str, Mapping[float, bool]],
+    verdicts: Mapping[str, Verdicts],
 ) -> Policy:
     """Derive the policy from the curves over pixels; with nothing shown, ``best`` alone remains.
 
@@ -105,34 +97,20 @@ def policy_of(
     each LoD at which sizes in pixels it was found equivalent, and at which not.
     """
     below = [lod for lod, rank in ranks.items() if 0 <= rank < ranks[best]]
-    own = {kind: curves.of(kind) for kind in _QUESTIONS}
-    shown = [lod for lod in below if any(lod in found for found in own.values())]
+    shown = [lod for lod in below if lod in verdicts or lod in with_curves(curves)]
+    limits = size_limits(sorted(shown, key=lambda lod: -ranks[lod]), curves, verdicts)
     steps: list[PolicyStep] = []
     left_out: dict[str, str] = {}
-    reach, stopped_at = np.inf, ""
-    for lod in sorted(shown, key=lambda name: -ranks[name]):
-        limits = {kind: own[kind][lod] for kind in _QUESTIONS if lod in own[kind]}
-        if missing := [kind for kind in _QUESTIONS if kind not in limits]:
-            left_out[lod] = f"along pixels it is not known how it is {' and '.join(missing)}"
-            reach, stopped_at = 0.0, stopped_at or lod
-            continue
-        found = [curve.threshold(MARGIN) for curve in limits.values()]
-        largest = min(curve.shown[1] for curve in limits.values())
-        reach = min(reach, largest, *(one.safe for one in found))
-        reach = _confirmed(reach, verdicts.get(lod, {}))
+    for limit in limits:
+        reach = tenth(limit.safe)
         if reach == 0.0:
-            left_out[lod] = _failure(stopped_at)
-            stopped_at = stopped_at or lod
+            left_out[limit.lod] = limit.why
             continue
-        steps = [step for step in steps if (step.up_to_px or 0.0) > _tenth(reach)]
-        interval = (_tenth(reach), _tenth(_upper(found, largest)))
-        steps.append(_step(lod, _tenth(reach), interval, levels=levels, costs=costs))
-    kept = {step.lod for step in steps}
-    left_out |= {
-        lod: "a coarser one is enough up to the same size"
-        for lod in shown
-        if lod not in kept and lod not in left_out
-    }
+        overtaken = [step.lod for step in steps if (step.up_to_px or 0.0) <= reach]
+        left_out |= dict.fromkeys(overtaken, "a coarser one is enough up to the same size")
+        steps = [step for step in steps if step.lod not in overtaken]
+        interval = (reach, tenth(limit.upper))
+        steps.append(_step(limit.lod, reach, interval, levels=levels, costs=costs))
     last = _step(best, None, None, levels=levels, costs=costs)
     return Policy(
         steps=(*reversed(steps), last),
@@ -142,61 +120,9 @@ def policy_of(
     )
 
 
-def policy_for(
-    tables: Tables,
-    curves: Curves,
-    *,
-    decisions: Sequence[Decision],
-    margins: Margins,
-    costs: Costs | None,
-) -> Policy | None:
-    """Derive a study's policy; None where no LoD with a rank has a curve over pixels."""
-    ranks = margins.order(lod_ranks(tables.ratings))
-    best = best_lod(tables.ratings, tables.comparisons, ranks)
-    ranked = {lod for kind in _QUESTIONS for lod in curves.of(kind) if ranks.get(lod, -1.0) >= 0}
-    if best is None or not ranked:
-        return None
-    return policy_of(
-        curves,
-        best,
-        ranks,
-        levels=levels_of(tables.ratings),
-        margins=margins,
-        costs=costs,
-        provenance=_origin(tables, costs),
-        verdicts=_by_size(decisions, tables),
-    )
-
-
-def _by_size(decisions: Sequence[Decision], tables: Tables) -> dict[str, dict[float, bool]]:
-    """Return whether each LoD was found equivalent, by the median size at the distance."""
-    size = tables.ratings.groupby("distance")["iris_px"].median().to_dict()
-    found: dict[str, dict[float, bool]] = {}
-    for decision in decisions:
-        px = float(size.get(decision.distance, np.nan))
-        for verdict in decision.verdicts if np.isfinite(px) else ():
-            found.setdefault(verdict.lod, {})[px] = verdict.outcome == EQUIVALENT
-    return found
-
-
-def _origin(tables: Tables, costs: Costs | None) -> dict[str, Any]:
-    named = tables.ratings[["study", "study_version"]].dropna(how="all").drop_duplicates()
-    return {
-        "command": "ocularist analyse",
-        "version": own_version(),
-        "study": [" ".join(map(str, row.dropna())) for _, row in named.iterrows()],
-        "simulated": tables.is_simulated,
-        "people": int(answered(tables.ratings)["participant"].nunique()),
-        "ratings": len(answered(tables.ratings)),
-        "comparisons": int((~tables.comparisons["is_practice"]).sum()),
-        "costs": f"milliseconds of a frame per eye: {costs.condition}" if costs else None,
-    }
-
-
-def _failure(stopped_at: str) -> str:
-    if stopped_at:
-        return f"not tested after {stopped_at}, which is not shown to be enough"
-    return "not shown to be enough at any size"
+def with_curves(curves: Curves) -> set[str]:
+    """Return the LoDs that have a curve over pixels."""
+    return {lod for kind in QUESTIONS for lod in curves.of(kind)}
 
 
 def _step(
@@ -207,7 +133,8 @@ def _step(
     levels: Levels,
     costs: Costs | None,
 ) -> PolicyStep:
-    return PolicyStep(lod, _own_levels(lod, levels), up_to, interval, _ms(lod, up_to, costs))
+    ms = frame_ms(costs, lod, px=up_to) if costs else None
+    return PolicyStep(lod, _own_levels(lod, levels), up_to, interval, ms)
 
 
 def _own_levels(lod: str, levels: Levels) -> dict[str, str] | None:
@@ -217,40 +144,6 @@ def _own_levels(lod: str, levels: Levels) -> dict[str, str] | None:
     if lod in STANDARD_LODS and (not is_known or set(own.values()) == {lod}):
         return None
     return own if is_known else None
-
-
-def _confirmed(reach: float, verdicts: Mapping[float, bool]) -> float:
-    """Shorten a curve's limit to the sizes before the first one that was not found equivalent."""
-    first = min((px for px, is_equivalent in verdicts.items() if not is_equivalent), default=np.inf)
-    if reach < first:
-        return reach
-    return max((px for px, is_equivalent in verdicts.items() if px < first), default=0.0)
-
-
-def _upper(found: list[Threshold], largest: float) -> float:
-    """Return the size from which one of the questions shows that the LoD is not enough."""
-    return float(min(largest, *(one.high for one in found)))
-
-
-def _ms(lod: str, up_to: float | None, costs: Costs | None) -> tuple[float, float, float] | None:
-    """Return the frame's milliseconds per eye, measured nearest to the size up to which it is used.
-
-    The finest is taken at its largest.
-    """
-    if costs is None:
-        return None
-    rows = costs.table[costs.table["lod"] == lod]
-    if rows.empty:
-        return None
-    px = rows["iris_px"].to_numpy(dtype=float)
-    away = -px if up_to is None else np.abs(np.log(np.maximum(px, 1e-3) / up_to))
-    distance = str(rows["distance"].iloc[int(np.argmin(away))])
-    draws, middle = cost_draws(costs, distance, lod), costs.ms(distance, lod)
-    if draws is None or middle is None:
-        return None
-    low, high = np.quantile(draws, (0.025, 0.975))
-    numbers = (round(float(ms) / costs.eyes, 3) for ms in (middle, low, high))
-    return next(numbers), next(numbers), next(numbers)
 
 
 def _measure(best: str, margins: Margins) -> str:
@@ -264,12 +157,12 @@ def _measure(best: str, margins: Margins) -> str:
 def _evidence(curves: Curves, margins: Margins) -> dict[str, Any]:
     """Return the margins, the sizes shown, and each LoD's own limits with their intervals."""
     limits: dict[str, dict[str, Any]] = {}
-    own = [curve for kind in _QUESTIONS for curve in curves.of(kind).values()]
+    own = [curve for kind in QUESTIONS for curve in curves.of(kind).values()]
     for curve in own:
         found = curve.threshold(MARGIN)
         sizes = {"estimate": found.size, "low": found.low, "high": found.high, "safe": found.safe}
         limits.setdefault(curve.lod, {})[curve.kind] = {
-            name: _tenth(size) if found.where(size) == "shown" else found.where(size)
+            name: tenth(size) if found.where(size) == SHOWN else found.where(size)
             for name, size in sizes.items()
         }
     shown = [size for curve in own for size in curve.shown]
@@ -280,11 +173,11 @@ def _evidence(curves: Curves, margins: Margins) -> dict[str, Any]:
             "confidence": margins.confidence,
             "origin": margins.origins,
         },
-        "sizes_shown_px": [_tenth(min(shown)), _tenth(max(shown))] if shown else None,
+        "sizes_shown_px": [tenth(min(shown)), tenth(max(shown))] if shown else None,
         "limits_px": limits,
     }
 
 
-def _tenth(size: float) -> float:
+def tenth(size: float) -> float:
     """Round down to a tenth of a pixel: never beyond what was shown."""
     return float(np.floor(size * 10) / 10)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 from analysis.estimates.realism import Realism
 from analysis.wording import listed
+
+_MOST_NAMED: Final = 4
 
 
 def separation_warnings(realism: Realism) -> tuple[str, ...]:
@@ -24,7 +28,13 @@ def separation_warnings(realism: Realism) -> tuple[str, ...]:
                 names.append(f"{lod} at {distance}")
         if names:
             told.append(
-                f"all ratings of {listed(names)} are the {word}: how far beyond the scale's end "
-                "they lie is not known, and priors keep them finite"
+                f"all ratings of {_few(names)} are the {word}: how far beyond the scale's end "
+                "that lies is not known, and priors keep it finite"
             )
     return tuple(told)
+
+
+def _few(names: list[str]) -> str:
+    if len(names) <= _MOST_NAMED:
+        return listed(names)
+    return f"{', '.join(names[: _MOST_NAMED - 1])} and {len(names) - _MOST_NAMED + 1} others"

@@ -270,5 +270,5 @@ def test_a_study_without_sizes_or_ranks_says_so(simulated: Tables) -> None:
     found = curves_of(one, rng, margins=DEFAULT, ranks=RANKS, experts={})
     assert found.of(RATED) == {}
     assert found.notes[0] == (
-        "No curve over pixels for low: it takes two sizes at which ultra was shown too."
+        "No curve over pixels for low: it takes answers at two sizes, and to ultra too."
     )

@@ -111,6 +111,7 @@ def test_no_limit_lies_beyond_the_sizes_shown_nor_at_a_failed_distance() -> None
     made = policy(far, far, verdicts=verdicts)
     assert limits(made) == {"low": 12.0, "medium": 160.0, "ultra": None}
     none = policy(far, far, verdicts={"high": {12.0: False}})
+    assert none.left_out["low"] == "not tested after high, which is not shown to be enough"
     assert none.left_out["high"] == "not shown to be enough at any size"
 
 
@@ -153,3 +154,13 @@ def test_a_lod_whose_levels_are_unknown_is_refused_where_its_name_does_not_say_t
         ValueError, match='only low, medium, high, ultra are known by name, "plain"'
     ):
         parse_policy(text, source="lod_policy.json")
+
+
+def test_what_a_distance_shows_holds_where_a_curve_is_too_unsure() -> None:
+    verdicts = {"high": {12.0: True, 40.0: True, 160.0: False}, "low": {12.0: True, 40.0: False}}
+    unsure = {"high": (0.0, 200.0), "low": (15.0, 50.0)}
+    made = policy(unsure, unsure, verdicts=verdicts)
+    assert limits(made) == {"low": 15.0, "high": 40.0, "ultra": None}
+    alone = policy({}, {}, verdicts=verdicts)  # a study without curves
+    assert limits(alone) == {"low": 12.0, "high": 40.0, "ultra": None}
+    assert [step.interval_px for step in alone.steps] == [(12.0, 40.0), (40.0, 160.0), None]
