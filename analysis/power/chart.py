@@ -60,7 +60,7 @@ def _panel(axes: Axes, outcome: Outcome, distance: str, lods: list[str]) -> None
             *(cheapest["participants"], cheapest["right"]), color=_BAND, linewidth=7, zorder=2
         )
         text = f"{cheapest['right_lod'].iloc[0]} named as cheapest"
-        ends.append(_End(float(cheapest["right"].iloc[-1]), text, _BAND, 5.0))
+        ends.append(_End(float(cheapest["right"].iloc[-1]), text, _BAND, 4.0))
     for lod, rows in own.groupby("lod", sort=False):
         name = str(rows["right_verdict"].iloc[0])
         shown = name or "equivalent"
@@ -70,7 +70,7 @@ def _panel(axes: Axes, outcome: Outcome, distance: str, lods: list[str]) -> None
         colour = lod_colour(str(lod), lods)
         _line(axes, rows, shown, colour=colour, marker=lod_marker(str(lod), lods))
         text = f"{lod}: {shown}" if name else f"{lod}: {shown}, on the margin"
-        ends.append(_End(float(rows[shown].iloc[-1]), text, colour, 1.2))
+        ends.append(_End(float(rows[shown].iloc[-1]), text, colour, 1.4))
     if ends:
         axes.plot(
             *([people[0], people[-1]], [POWER] * 2), color=QUIET, linewidth=0.8, linestyle="--"
@@ -123,6 +123,7 @@ def _label(axes: Axes, ends: list[_End], *, at: float) -> None:
                 "arrowstyle": "-",
                 "color": end.colour,
                 "linewidth": end.width,
+                "relpos": (0.0, 0.5),
                 "shrinkA": 1,
                 "shrinkB": 3,
             },

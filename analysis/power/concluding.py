@@ -23,12 +23,25 @@ class Reason:
 def reasons(scene: Scene, *, distances: Sequence[str], lods: Sequence[str]) -> dict[Cell, Reason]:
     """Return for every distance and LoD but the best one there what stands in the way."""
     best = best_lods(scene.plans[0].stimuli, scene.margins)
-    return {
+    found = {
         (distance, lod): _reason(scene, distance, lod, best=best.get(distance))
         for distance in distances
         for lod in lods
         if lod != best.get(distance)
     }
+    for distance in distances:
+        _hold_up(found, distance, sequence_of(scene, distance)[1:])
+    return found
+
+
+def _hold_up(found: dict[Cell, Reason], distance: str, sequence: Sequence[str]) -> None:
+    """No LoD is reached after one that cannot be shown to be enough."""
+    held_up = ""
+    for lod in sequence:
+        own = found.get((distance, lod), Reason())
+        if held_up and not own.text:
+            found[distance, lod] = Reason(f"{held_up}, which is tested before it, cannot be shown")
+        held_up = held_up or (lod if own.text else "")
 
 
 def _reason(scene: Scene, distance: str, lod: str, *, best: str | None) -> Reason:

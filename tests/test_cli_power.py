@@ -1,0 +1,62 @@
+"""``ocularist power``: what it prints, and what it refuses in one line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from study.cli import main
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    try:
+        status = main(["power", *arguments])
+    except SystemExit as error:
+        status = int(str(error.code))
+    assert status != 0
+    return capsys.readouterr().err
+
+
+def test_power_of_the_recommended_study(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    own = ["--participants", "12,6", "--replicates", "3", "--jobs", "1", "--out", str(tmp_path)]
+    assert main(["power", "lod", *own, "--noticed-margin", "0.3"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split()[-4:] == ["6", "people", "12", "people"]
+    assert sum(line.startswith("macroscopic") for line in lines) >= 4
+    assert any(line.startswith("SIMULATED people, 3 studies; brackets hold") for line in lines)
+    told = json.loads((tmp_path / "power.json").read_text(encoding="utf-8"))
+    assert told["participants"] == [6, 12]
+    assert (told["study"], told["truth"], told["noticed_margin"]) == ("lod", "thesis", 0.3)
+    assert told["margins"] == "noticed margin set at analysis"
+
+
+def test_the_thesiss_design_cannot_conclude_equivalence(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    own = ["--participants", "10", "--replicates", "2", "--jobs", "1", "--out", str(tmp_path)]
+    assert main(["power", "thesis", *own]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "Cannot be concluded, however many take part: equivalence of low at macroscopic" in text
+    assert "(nobody sees anything at medium)" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("--participants", "10,x"), '"10,x": write whole numbers from 2 to 5000, like 10,20,40'),
+        (("--participants", "1"), '"1": write whole numbers from 2 to 5000'),
+        (("--dropout", "1.5"), '"1.5" is no share; write a number from 0 to below 1, like 0.1'),
+        (("--truth", "flat"), 'truth: "flat"; accepted: thesis, equal, realism-margin'),
+        (("--truth", "nowhere.toml"), "nowhere.toml: No such file or directory"),
+        (("--realism-margin", "0"), "realism_margin: found 0; accepted: above 0"),
+        (("--replicates", "0"), '"0" is no count; write a whole number, 1 or more'),
+    ],
+)
+def test_bad_input_is_one_clear_line(
+    capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], told: str
+) -> None:
+    text = refused(capsys, "lod", *arguments)
+    assert told in text
+    assert text.count("\n") == 1
