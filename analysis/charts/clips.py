@@ -82,7 +82,7 @@ def realism_per_clip(tables: Tables) -> Figure:
         panels = band.subplots(1, len(widths), squeeze=False, sharey=True, width_ratios=widths)[0]
         for place, (axes, panel) in enumerate(zip(panels, row, strict=False)):
             _draw_clips(axes, panel, people, lods, is_narrow=is_narrow)
-            rating_axis(axes, tables.scale, is_labelled=place == 0)
+            rating_axis(axes, tables.scale, is_labelled=place == 0, is_short=len(rows) > 2)
             axes.set_title(
                 distance_label(str(panel["distance"].iloc[0]), tables), fontsize=NORMAL, color=INK
             )

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from analysis.charts.material import Material
-from analysis.charts.parts import records
+from analysis.charts.parts import apart, records
 from analysis.charts.style import (
     ALARM,
     INK,
@@ -26,12 +26,20 @@ from analysis.charts.style import (
     new_figure,
     tidy,
 )
-from analysis.curves.curve import MARGIN, NOTICED, PREFERRED, RATED, SizeCurve, curve_table
+from analysis.curves.curve import (
+    MARGIN,
+    NOTICED,
+    PREFERRED,
+    RATED,
+    SHOWN,
+    SizeCurve,
+    curve_table,
+)
 from analysis.ordering import distance_order, lod_order
 from analysis.reading import Tables
-from analysis.wording import percent
+from analysis.wording import people, percent
 
-_HEIGHT_IN: Final = 3.4
+_PANEL_IN: Final = 2.7
 _SIZES: Final = 2.0 ** np.arange(-8.0, 12.0)  # marks of the axis, px or degrees
 
 
@@ -78,20 +86,18 @@ def curves_along_sizes(material: Material, kind: str) -> Figure:
         return message_figure(look.title, reason, is_simulated=material.is_simulated)
     measures = list(dict.fromkeys(curve.measure for curve in own))
     figure = new_figure(
-        PAGE_WIDTH_IN if len(measures) > 1 else 5.2,
-        _HEIGHT_IN,
+        PAGE_WIDTH_IN,
+        0.7 + _PANEL_IN * len(measures),
         look.title,
         is_simulated=material.is_simulated,
     )
-    panels = figure.subplots(1, len(measures), squeeze=False, sharey=True)[0]
+    panels = figure.subplots(len(measures), 1, squeeze=False, sharey=True)[:, 0]
     lods = lod_order(material.tables.ratings)
-    for place, (axes, measure) in enumerate(zip(panels, measures, strict=True)):
-        curves = [curve for curve in own if curve.measure == measure]
-        _draw_panel(axes, curves, lods, look)
+    for axes, measure in zip(panels, measures, strict=True):
+        _draw_panel(axes, [curve for curve in own if curve.measure == measure], lods, look)
         unit = "degrees at the eye" if measure.unit == "°" else "pixels"
         axes.set_xlabel(f"diameter of the iris, {unit}", fontsize=SMALL)
-        if place == 0:
-            axes.set_ylabel(look.axis, fontsize=SMALL)
+        axes.set_ylabel(look.axis, fontsize=SMALL)
         if measure.column == "iris_px":
             _name_distances(axes, material.tables)
     return figure
@@ -110,9 +116,14 @@ def _draw_panel(axes: Axes, curves: Sequence[SizeCurve], lods: Sequence[str], lo
             axes.plot([x, x], [point["low"], point["high"]], color=colour, linewidth=1.0, zorder=2)
             axes.plot([x], [point["value"]], marker=marker, color=colour, markersize=5,
                       markeredgecolor=INK, markeredgewidth=0.6, zorder=4)  # fmt: skip
-    _name_curves(axes, curves, lods, look)
     _draw_base(axes, curves[0], look)
     _draw_margins(axes, curves, lods)
+    _scale_axes(axes, curves, look)
+    _name_curves(axes, curves, lods, look)
+
+
+def _scale_axes(axes: Axes, curves: Sequence[SizeCurve], look: _Look) -> None:
+    """Let the axes show the sizes shown and every curve and point; long intervals may leave."""
     smallest = min(curve.shown[0] for curve in curves)
     largest = max(curve.shown[1] for curve in curves)
     axes.set_xlim(smallest / 1.15, largest * 1.15)
@@ -123,64 +134,52 @@ def _draw_panel(axes: Axes, curves: Sequence[SizeCurve], lods: Sequence[str], lo
     if look.is_share:
         axes.set_ylim(-0.02, 1.02)
         axes.yaxis.set_major_formatter(lambda value, _: f"{100 * value:.0f} %")
+        return
+    shown = [np.concatenate([curve.low, curve.high, curve.points["value"]]) for curve in curves]
+    low, high = float(np.nanmin(np.concatenate(shown))), float(np.nanmax(np.concatenate(shown)))
+    axes.set_ylim(min(low, 0.0) - 0.1 * (high - low), high + 0.1 * (high - low))
 
 
 def _name_curves(axes: Axes, curves: Sequence[SizeCurve], lods: Sequence[str], look: _Look) -> None:
     """Write each LoD and its n at the curve's end, moved apart where they would overlap."""
-    low, high = (0.0, 1.0) if look.is_share else axes.get_ylim()
-    least = 0.07 * (high - low)
-    at = -np.inf
-    for curve in sorted(curves, key=lambda own: float(own.value[-1])):
-        at = max(float(curve.value[-1]), at + least)
-        axes.annotate(
-            f"{curve.lod}, n = {curve.people}",
-            (1.01, at),
-            xycoords=axes.get_yaxis_transform(),
-            ha="left",
-            va="center",
-            fontsize=SMALL,
-            color=INK,
-            annotation_clip=False,
-        )
-        axes.plot(
-            [1.0],
-            [at],
-            marker=lod_marker(curve.lod, lods),
-            color=lod_colour(curve.lod, lods),
-            transform=axes.get_yaxis_transform(),
-            clip_on=False,
-            markersize=4,
-        )
+    low, high = axes.get_ylim()
+    base, is_told = curves[0].base[0], bool(look.base) and np.isfinite(curves[0].base[0])
+    ends = [float(curve.value[-1]) for curve in curves] + ([base] if is_told else [])
+    places = apart(ends, least=0.085 * (high - low), low=low, high=high)
+    across = axes.get_yaxis_transform()
+    names = [f"{curve.lod}, {people(curve.people)}" for curve in curves]
+    names += [f"{look.base}, {percent(base)}"] if is_told else []
+    for i, (y, name) in enumerate(zip(places, names, strict=True)):
+        colour = INK if i < len(curves) else _base_colour(look)
+        axes.annotate(name, (1.035, y), xycoords=across, ha="left", va="center", fontsize=SMALL,
+                      color=colour, annotation_clip=False)  # fmt: skip
+        if i < len(curves):
+            lod = curves[i].lod
+            axes.plot([1.018], [y], marker=lod_marker(lod, lods), color=lod_colour(lod, lods),
+                      transform=across, clip_on=False, markersize=4.5)  # fmt: skip
+
+
+def _base_colour(look: _Look) -> str:
+    return ALARM if look.base == "false alarms" else QUIET
 
 
 def _draw_base(axes: Axes, curve: SizeCurve, look: _Look) -> None:
     """Draw what there would be without any difference, with its interval."""
     value, low, high = curve.base
-    if not np.isfinite(value):
-        return
-    colour = ALARM if look.base == "false alarms" else QUIET
-    axes.axhline(value, color=colour, linewidth=1.0, linestyle=(0, (1, 2)), zorder=1)
-    if look.base:
-        axes.axhspan(low, high, color=colour, alpha=0.08, linewidth=0, zorder=0)
-        axes.annotate(
-            f"{look.base} {percent(value)}",
-            (0.015, value),
-            xycoords=axes.get_yaxis_transform(),
-            xytext=(0, 2),
-            textcoords="offset points",
-            fontsize=SMALL - 1,
-            color=colour,
-        )
+    if np.isfinite(value):
+        colour = _base_colour(look)
+        axes.axhline(value, color=colour, linewidth=1.0, linestyle=(0, (1, 2)), zorder=1)
+        if look.base:
+            axes.axhspan(low, high, color=colour, alpha=0.08, linewidth=0, zorder=0)
 
 
 def _draw_margins(axes: Axes, curves: Sequence[SizeCurve], lods: Sequence[str]) -> None:
     """Mark on each curve the size up to which it stays within its margin."""
     for curve in curves:
-        named = [own for own in curve.thresholds if own.name == MARGIN]
-        for own in named:
-            if own.where(own.size) == "shown":
-                axes.plot([own.size], [float(np.interp(np.log2(own.size), np.log2(curve.sizes),
-                          curve.value))], marker="|", markersize=13, markeredgewidth=2,
+        for own in curve.thresholds:
+            if own.name == MARGIN and own.where(own.size) == SHOWN:
+                y = float(np.interp(np.log2(own.size), np.log2(curve.sizes), curve.value))
+                axes.plot([own.size], [y], marker="|", markersize=13, markeredgewidth=2,
                           color=lod_colour(curve.lod, lods), zorder=5)  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analysis.charts.material import Material
-from analysis.charts.parts import distance_label
+from analysis.charts.parts import apart, distance_label
 from analysis.charts.scales import NO_MODEL
 from analysis.charts.style import (
     INK,
@@ -22,7 +22,6 @@ from analysis.charts.style import (
     lod_marker,
     message_figure,
     new_figure,
-    rating_axis,
     tidy,
 )
 from analysis.decision.pareto import ParetoPoint, pareto_table
@@ -34,6 +33,7 @@ NO_COST: Final = (
 )
 NO_BOTH: Final = "No LoD was both rated by two people or more and timed at the same distance."
 _GREY: Final = "#b5b5b5"
+_NEAR: Final = 0.12  # of the axis: symbols so close share a column of names
 
 
 def points_table(material: Material) -> pd.DataFrame:
@@ -59,13 +59,17 @@ def realism_against_cost(material: Material) -> Figure:
     )
     grid = figure.subplots(rows, columns, squeeze=False, sharey=True).ravel().tolist()
     lods = lod_order(material.tables.ratings)
+    low, high = material.tables.scale
+    ends = [end for point in points for end in point.rating[1:]]
+    grid[0].set_ylim(min(ends) - 0.25, max(ends) + 0.25)
     for place, axes in enumerate(grid):
         if place >= len(distances):
             axes.set_visible(False)
             continue
         own = [point for point in points if point.distance == distances[place]]
         _draw_panel(axes, own, lods)
-        rating_axis(axes, material.tables.scale, is_labelled=place % columns == 0)
+        if place % columns == 0:
+            axes.set_ylabel(f"mean rating, {low} to {high}", fontsize=SMALL, color=INK)
         axes.set_title(
             distance_label(distances[place], material.tables), fontsize=NORMAL, color=INK
         )
@@ -87,14 +91,27 @@ def _draw_panel(axes: Axes, points: Sequence[ParetoPoint], lods: Sequence[str]) 
         axes.plot([ms, ms], [low, high], color=colour, linewidth=1.5, zorder=2)
         axes.plot([ms], [rating], marker=lod_marker(point.lod, lods), color=colour, markersize=7,
                   markeredgecolor=INK if point.is_on_front else QUIET, zorder=3)  # fmt: skip
-        axes.annotate(
-            point.lod,
-            (ms, rating),
-            xytext=(5, 5),
-            textcoords="offset points",
-            fontsize=SMALL,
-            color=INK if point.is_on_front else QUIET,
-            zorder=4,
-        )
-    axes.set_xlim(left=0)
-    axes.margins(x=0.18)
+    axes.set_xlim(0, 1.22 * max(point.ms[2] for point in points))
+    _name(axes, points)
+
+
+def _name(axes: Axes, points: Sequence[ParetoPoint]) -> None:
+    """Write each LoD beside its symbol; names of symbols that lie close together stand apart."""
+    low, high = axes.get_ylim()
+    near = _NEAR * axes.get_xlim()[1]
+    groups: list[list[ParetoPoint]] = []
+    for point in sorted(points, key=lambda own: own.ms[0]):
+        if groups and point.ms[0] - groups[-1][-1].ms[0] < near:
+            groups[-1].append(point)
+        else:
+            groups.append([point])
+    for own in groups:
+        right = max(point.ms[2] for point in own)
+        places = apart([p.rating[0] for p in own], least=0.1 * (high - low), low=low, high=high)
+        for point, y in zip(own, places, strict=True):
+            axes.annotate(point.lod, (right, y), xytext=(6, 6 if len(own) == 1 else 0),
+                          textcoords="offset points", va="center", fontsize=SMALL,
+                          color=INK if point.is_on_front else QUIET, zorder=4)  # fmt: skip
+            if len(own) > 1:
+                axes.plot([point.ms[0], right + 0.3 * near], [point.rating[0], y], color=_GREY,
+                          linewidth=0.6, zorder=1)  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -73,6 +74,22 @@ def lod_legend(
             frameon=False,
             fontsize=SMALL,
         )
+
+
+def apart(places: Sequence[float], *, least: float, low: float, high: float) -> list[float]:
+    """Move places, in any order, at least ``least`` apart, within ``low`` to ``high`` if they fit.
+
+    They keep their order and move as little as that takes from below.
+    """
+    order = sorted(range(len(places)), key=lambda i: places[i])
+    moved = list(places)
+    for before, after in itertools.pairwise(order):
+        moved[after] = max(moved[after], moved[before] + least)
+    limit = high
+    for i in reversed(order):
+        moved[i] = max(low, min(moved[i], limit))
+        limit = moved[i] - least
+    return moved
 
 
 def upright_in(names: Sequence[str]) -> float:

@@ -81,7 +81,7 @@ def observers(material: Material) -> Figure:
     axes.margins(x=0.12)
     axes.set_xlabel("leniency (bias), rating points: severe to lenient", fontsize=SMALL)
     axes.set_ylabel("inconsistency, rating points", fontsize=SMALL)
-    figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=SMALL)
+    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=SMALL)
     return figure
 
 

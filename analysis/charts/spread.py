@@ -29,7 +29,7 @@ from analysis.descriptive import mean_ratings
 from analysis.ordering import lod_order
 from analysis.wording import number
 
-SPREAD: Final = "Do people agree? Variance against mean rating"
+SPREAD: Final = "Where people disagree"
 TOO_FEW: Final = "It takes two people who rated the same eye; there are not so many yet."
 
 

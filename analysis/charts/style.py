@@ -107,7 +107,7 @@ def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: b
 
 def message_figure(title: str, message: str, *, is_simulated: bool = False) -> Figure:
     """Return a figure that says why there is nothing to draw."""
-    figure = new_figure(6.5, 2.2, title, is_simulated=is_simulated)
+    figure = new_figure(6.5, 1.3, title, is_simulated=is_simulated)
     figure.text(
         0.5, 0.42, message, ha="center", va="center", fontsize=NORMAL, color=QUIET, wrap=True
     )
@@ -127,13 +127,16 @@ def tidy(axes: Axes, *, grid: Literal["x", "y", ""] = "y") -> None:
         axes.grid(axis=grid, color="#ececec", linewidth=0.8)
 
 
-def rating_axis(axes: Axes, scale: tuple[int, int], *, is_labelled: bool = True) -> None:
+def rating_axis(
+    axes: Axes, scale: tuple[int, int], *, is_labelled: bool = True, is_short: bool = False
+) -> None:
     """Let the vertical axis show the whole rating scale."""
     low, high = scale
     axes.set_ylim(low - 0.3, high + 0.45)
     axes.set_yticks(range(low, high + 1))
     if is_labelled:
-        axes.set_ylabel(f"perceived realism, {low} to {high}", fontsize=SMALL, color=INK)
+        name = "realism" if is_short else "perceived realism"
+        axes.set_ylabel(f"{name}, {low} to {high}", fontsize=SMALL, color=INK)
 
 
 def beeswarm(values: Sequence[float] | np.ndarray, *, step: float) -> np.ndarray:
