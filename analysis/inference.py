@@ -19,12 +19,13 @@ from analysis.deciding import (
     fit_realism,
     rng_of,
 )
-from analysis.decision.effects import EffectVerdict, decide_effects, effect_table, levels_of
+from analysis.decision.effects import EffectVerdict, decide_effects, levels_of
 from analysis.decision.margins import Margins
 from analysis.decision.pareto import ParetoPoint, pareto, pareto_table
 from analysis.decision.policy import Policy
 from analysis.decision.study_policy import policy_for
-from analysis.decision.verdicts import Decision, verdict_table
+from analysis.decision.verdict_tables import effect_table, verdict_table
+from analysis.decision.verdicts import Decision
 from analysis.estimates.joint import Joint, joint_of
 from analysis.estimates.linkage import Linkage, linkage_of
 from analysis.estimates.noticing import Noticing

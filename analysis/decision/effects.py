@@ -10,9 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
 
-import numpy as np
 import pandas as pd
 
 from analysis.cost import Costs
@@ -28,7 +26,7 @@ from analysis.decision.verdicts import (
 from analysis.estimates.noticing import Noticing
 from analysis.estimates.realism import Realism
 from analysis.multiplicity import holm
-from analysis.savings import Saving, effect_saving, lod_saving, saving_columns
+from analysis.savings import Saving, effect_saving, lod_saving
 from analysis.table import EFFECTS
 
 Levels = Mapping[str, Mapping[str, str]]
@@ -180,27 +178,6 @@ def levels_of(ratings: pd.DataFrame) -> dict[str, dict[str, str]]:
         str(lod): {str(effect): str(level) for effect, level in row.dropna().items()}
         for lod, row in rows.iterrows()
     }
-
-
-COLUMNS: Final = (
-    *("distance", "lod", "best", "change", "verdict"),
-    *("realism_loss", "realism_loss_low", "realism_loss_high", "realism_margin"),
-    *("noticed_excess", "noticed_excess_low", "noticed_excess_high", "noticed_margin"),
-    *("p_equivalent", "p_different"),
-)
-
-
-def effect_table(verdicts: Sequence[EffectVerdict], costs: Costs | None = None) -> pd.DataFrame:
-    """Return one row per LoD and distance, as effects-decision.csv has them."""
-    rows = []
-    for own in verdicts:
-        unknown = Test(np.nan, np.nan, np.nan, np.nan)
-        tests = (own.realism, own.noticed or unknown)
-        numbers = [n for test in tests for n in (test.value, test.low, test.high, test.margin)]
-        head = (own.distance, own.lod, own.best, own.name, own.outcome)
-        row = dict(zip(COLUMNS, (*head, *numbers, own.p_equivalent, own.p_different), strict=True))
-        rows.append({**row, **(saving_columns(saving_of(own, costs)) if costs else {})})
-    return pd.DataFrame(rows)
 
 
 def saving_of(verdict: EffectVerdict, costs: Costs | None) -> Saving | None:

@@ -13,15 +13,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.cost import Costs
 from analysis.decision.margins import DEFAULT, Margins
 from analysis.estimates.noticing import Noticing
 from analysis.estimates.realism import Realism
-from analysis.multiplicity import holm
-from analysis.savings import lod_saving, saving_columns
 
 Floats = NDArray[np.float64]
 EQUIVALENT, DIFFERENT, NOT_SHOWN = "equivalent", "different", "not shown"
@@ -193,43 +189,3 @@ def _cheapest_shares(enough: Mapping[str, NDArray[np.bool_]]) -> dict[str, float
     down = np.cumprod(np.array([enough[name] for name in names]), axis=0)
     after = np.vstack([down[1:], np.zeros_like(down[:1])])
     return dict(zip(names, (down - after).mean(axis=1).tolist(), strict=True))
-
-
-def verdict_table(decisions: list[Decision], costs: Costs | None = None) -> pd.DataFrame:
-    """Return one row per distance and LoD, as decision.csv has them; savings where costs are known.
-
-    ``p_equivalent`` is the p value of "it is not enough" along the sequence down to the LoD, and
-    ``p_equivalent_holm`` the same adjusted over the distances at which the LoD was judged.
-    """
-    rows = []
-    for decision in decisions:
-        p_value = 0.0
-        for verdict in decision.verdicts:
-            noticed = verdict.noticed
-            p_value = max(p_value, verdict.realism.p_beyond, noticed.p_beyond if noticed else 1.0)
-            row: dict[str, object] = {
-                "distance": decision.distance,
-                "lod": verdict.lod,
-                "best": verdict.best,
-                "verdict": verdict.outcome,
-                "is_tested": verdict.is_reached,
-                "realism_loss": verdict.realism.value,
-                "realism_loss_low": verdict.realism.low,
-                "realism_loss_high": verdict.realism.high,
-                "realism_margin": verdict.realism.margin,
-                "noticed_excess": noticed.value if noticed else np.nan,
-                "noticed_excess_low": noticed.low if noticed else np.nan,
-                "noticed_excess_high": noticed.high if noticed else np.nan,
-                "noticed_margin": noticed.margin if noticed else np.nan,
-                "share_cheapest": verdict.share_cheapest,
-                "chosen": decision.lod == verdict.lod,
-                "p_equivalent": p_value,
-            }
-            if costs:
-                saving = lod_saving(costs, decision.distance, verdict.lod, best=verdict.best)
-                row |= saving_columns(saving)
-            rows.append(row)
-    table = pd.DataFrame(rows)
-    if rows:
-        table["p_equivalent_holm"] = table.groupby("lod")["p_equivalent"].transform(holm)
-    return table

@@ -11,7 +11,7 @@ from analysis.charts.decision import REFERENCE, decision_cells
 from analysis.charts.forest import contrasts
 from analysis.charts.material import Material
 from analysis.charts.style import INK
-from analysis.decision.verdicts import verdict_table
+from analysis.decision.verdict_tables import verdict_table
 
 Texts = Callable[[Figure], list[str]]
 

@@ -14,11 +14,11 @@ from analysis.decision.effects import (
     Change,
     EffectVerdict,
     decide_effects,
-    effect_table,
     levels_of,
     saving_of,
 )
 from analysis.decision.margins import Margins
+from analysis.decision.verdict_tables import effect_table
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT, NOT_SHOWN
 from analysis.multiplicity import holm
 from analysis.table import EFFECTS

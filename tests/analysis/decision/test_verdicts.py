@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from analysis.decision import verdicts
+from analysis.decision.verdict_tables import verdict_table
 from analysis.decision.verdicts import (
     DIFFERENT,
     EQUIVALENT,
@@ -15,7 +16,6 @@ from analysis.decision.verdicts import (
     Decision,
     Margins,
     decide,
-    verdict_table,
 )
 
 RANKS = {"low": 0.0, "medium": 1.0, "high": 2.0, "ultra": 3.0, "plain": -1.0}
