@@ -95,7 +95,13 @@ def test_curves_run_over_the_sizes_shown_and_no_further(
     assert low > 12 / 1.3
     assert high < 160 * 1.3
     said = texts_of(figure)
-    assert {"near", "medium", "far", "low, n = 14", "diameter of the iris, pixels"} <= set(said)
+    assert {
+        "near",
+        "medium",
+        "far",
+        "low, n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}14",
+        "diameter of the iris, pixels",
+    } <= set(said)
     assert any(text.startswith("false alarms") for text in said)
 
 
