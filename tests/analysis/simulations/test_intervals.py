@@ -95,7 +95,7 @@ def test_intervals_made_from_the_tables_hold_the_truth(people: int, studies: int
 def test_where_lods_are_equal_hardly_anything_is_found(people: int, studies: int) -> None:
     own = setting(people, "equal")
     found, true = repeat(own, studies)
-    assert set(true.values()) == {pytest.approx(0.0, abs=1e-6)}
+    assert max(map(abs, true.values())) < 1e-6
     alarms = {kind: 1 - share for kind, (share, _, _) in by_kind(held(found, true)).items()}
     for kind in MODELS:
         assert alarms[kind] <= most(studies, 0.07), alarms
