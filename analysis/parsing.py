@@ -5,6 +5,7 @@ Rows are counted as a spreadsheet counts them: the header is row 1.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Final
@@ -16,6 +17,7 @@ from analysis.column import Column
 
 _FIRST_ROW: Final = 2
 _SHOWN_FAULTS: Final = 50
+_DECIMAL_COMMA: Final = re.compile(r"^([+-]?\d+),(\d+)$")
 _TRUTH: Final = {"true": True, "false": False, "1": True, "0": False}
 
 
@@ -50,12 +52,13 @@ def check_header(names: Sequence[str], columns: Sequence[Column], *, source: str
 
 
 def parse_table(
-    frame: pd.DataFrame, columns: Sequence[Column], *, source: str
+    frame: pd.DataFrame, columns: Sequence[Column], *, source: str, decimal_commas: bool = False
 ) -> tuple[pd.DataFrame, list[str]]:
     """Give every column its type and return the table with all faults of its cells.
 
     Cells may be text or already typed. Missing columns are added, empty; unknown ones are left out.
-    The frame's index plus two is the row that a fault names.
+    The frame's index plus two is the row that a fault names. With ``decimal_commas`` the number
+    1,5 lies between 1 and 2.
     """
     parsed: dict[str, pd.Series] = {}
     faults: list[tuple[int, str]] = []
@@ -64,7 +67,9 @@ def parse_table(
             text = _as_text(frame[column.name])
         else:
             text = pd.Series("", index=frame.index, dtype="string")
-        parsed[column.name], is_wrong = _parse(text, column)
+        is_number = decimal_commas and column.kind in ("integer", "number")
+        read = text.str.replace(_DECIMAL_COMMA, r"\1.\2", regex=True) if is_number else text
+        parsed[column.name], is_wrong = _parse(read, column)
         if column.name in frame:
             faults += [
                 (int(row), f'{column.name}: found "{text[row]}"; accepted {_accepted(column)}')
@@ -76,7 +81,8 @@ def parse_table(
 
 
 def _as_text(series: pd.Series) -> pd.Series:
-    return series.astype("string").str.strip().fillna("")
+    cells = series.astype("string").fillna("")
+    return pd.Series([cell.strip() for cell in cells.tolist()], index=cells.index, dtype="string")
 
 
 def _parse(text: pd.Series, column: Column) -> tuple[pd.Series, np.ndarray]:

@@ -6,10 +6,8 @@ here; whoever has one hands its tables to ``tables_from``.
 
 from __future__ import annotations
 
-import csv
-import io
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
@@ -17,6 +15,7 @@ from typing import Any, Final
 import pandas as pd
 
 from analysis.completing import complete_comparisons, complete_ratings, drop_repeated_rows
+from analysis.csv_text import CsvText, read_csv_text
 from analysis.decision.margins import DEFAULT, Margins, declared_margins
 from analysis.parsing import TableError, check_header, parse_table
 from analysis.table import COLUMNS, SCALE, accepted_in, columns_of
@@ -79,12 +78,17 @@ def tables_from(
         frame = frames.get(table)
         accepted = accepted_in(codebook, table) if codebook else {}
         name = frame.name if isinstance(frame, Path) else _FILES[table]
-        raw = _load(frame, name, faults)
         columns = columns_of(table, accepted)
-        if frame is not None:
+        loaded = _load(frame, name, {column.name for column in columns})
+        raw = loaded.cells
+        faults += loaded.faults
+        notes += loaded.notes
+        if frame is not None and not (loaded.faults and raw.empty):
             faults += check_header(list(raw.columns), columns, source=name)
         raw = raw.loc[:, ~raw.columns.duplicated()]
-        typed, cell_faults = parse_table(raw, columns, source=name)
+        typed, cell_faults = parse_table(
+            raw, columns, source=name, decimal_commas=loaded.has_decimal_commas
+        )
         faults += cell_faults
         notes += _unknown_columns(raw, {c.name for c in columns}, name)
         parsed[table] = drop_repeated_rows(typed, table, name, faults=faults, notes=notes)
@@ -125,38 +129,16 @@ def _assemble(
     )
 
 
-def _load(frame: pd.DataFrame | Path | None, name: str, faults: list[str]) -> pd.DataFrame:
+def _load(frame: pd.DataFrame | Path | None, name: str, known: Collection[str]) -> CsvText:
     if frame is None:
-        return pd.DataFrame()
+        return CsvText()
     if isinstance(frame, Path):
-        return _read_csv(frame, name, faults)
-    return frame.reset_index(drop=True)
-
-
-def _read_csv(path: Path, name: str, faults: list[str]) -> pd.DataFrame:
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError as error:
-        faults.append(f"{name}: byte {error.start} is not UTF-8; accepted: CSV text in UTF-8")
-        return pd.DataFrame()
-    first_line = text.partition("\n")[0]
-    separator = max(",;\t", key=first_line.count)
-    rows = list(csv.reader(io.StringIO(text, newline=""), delimiter=separator))
-    header = [cell.strip() for cell in rows[0]] if rows else []
-    cells = {number: row for number, row in enumerate(rows[1:]) if row}
-    faults += [
-        f"{name}: row {number + 2}: found {len(row)} cells; accepted {len(header)}, "
-        "as many as the header has"
-        for number, row in cells.items()
-        if len(row) != len(header)
-    ]
-    whole = {number: row for number, row in cells.items() if len(row) == len(header)}
-    index = pd.Index(list(whole), dtype="int64")
-    return pd.DataFrame(list(whole.values()), index=index, columns=header, dtype="string")
+        return read_csv_text(frame, name, known)
+    return CsvText(frame.reset_index(drop=True))
 
 
 def _unknown_columns(frame: pd.DataFrame, known: set[str], name: str) -> list[str]:
-    unknown = [str(column) for column in frame.columns if column not in known]
+    unknown = [str(column) or '""' for column in frame.columns if column not in known]
     return [f"{name}: not analysed: {', '.join(unknown)}."] if unknown else []
 
 

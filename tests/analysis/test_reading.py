@@ -83,7 +83,10 @@ def test_an_empty_file_says_what_it_needs(tmp_path: Path) -> None:
 def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "ratings.csv"
     path.write_bytes(b"participant,lod,rating\n\xff\xfe")
-    assert "ratings.csv: byte 23 is not UTF-8; accepted: CSV text in UTF-8" in faults_of(path)
+    assert faults_of(path) == (
+        "ratings.csv: row 2: byte 0xff is not UTF-8; accepted: CSV text in UTF-8, or in UTF-16 with "
+        'a byte order mark (in a spreadsheet, save as "CSV UTF-8")',
+    )
 
 
 def test_a_missing_source_and_a_folder_without_ratings_are_refused(tmp_path: Path) -> None:
