@@ -45,7 +45,7 @@ def test_a_pause_before_the_beginning_of_time_is_refused(
 def test_only_what_ends_while_we_measure_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0.0]
     monkeypatch.setattr("study.load.crowd.time.perf_counter", lambda: now[0])
-    timings = Timings(began=10.0, ended=12.0)
+    timings = Timings(began=10.0, ended=12.0, site_s=0.003, crowd_s=0.0005)
     for moment, seconds, status in ((9, 1, 200), (10, 0.1, 200), (11, 0.3, 303), (11, 9, 500)):
         now[0] = moment
         timings.note("answer", seconds, status)
@@ -58,4 +58,6 @@ def test_only_what_ends_while_we_measure_is_counted(monkeypatch: pytest.MonkeyPa
     assert (found.answers_per_s, found.requests_per_s, found.errors) == (1.0, 1.0, 1)
     assert found.p50_ms == pytest.approx(200)
     last = [cell.strip() for cell in table([found]).splitlines()[-1].strip("|").split("|")]
-    assert last == ["x", "1", "on", "1", "0", "1", "1", "200", "290", "298", "1", "2"]
+    assert last == ["x", "1", "on", "1", "0", "1", "1", "200", "290", "298", "1", "2"] + [
+        *("1.50", "0.25"),
+    ]

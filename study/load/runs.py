@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import subprocess
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -15,7 +15,7 @@ from study.data.studies import Study
 from study.load.crowd import Crowd
 from study.load.postgresql import TemporaryServer
 from study.load.report import Figures, figures_of
-from study.load.site import LoadedSite
+from study.load.site import PROGRAM, LoadedSite
 from study.site.signatures import SIMULATION_HEADER, simulation_token
 
 SQLITE: Final = "sqlite"
@@ -35,32 +35,57 @@ class Run:
     fsync: bool = True
     uses_outbox: bool = True
     study: str = "thesis"
+    program: tuple[str, ...] = PROGRAM
 
 
-async def measure(run: Run, *, report: Callable[[int], None] = lambda _done: None) -> Figures:
-    """Start a site, let a crowd at it, compare what it acknowledged with what it stored."""
+@dataclass(frozen=True)
+class Running:
+    """A site under load: where it is, what is asked there, and the programs that are its own."""
+
+    site: LoadedSite
+    study: Study
+    servers: tuple[int, ...]
+
+    def crowd(self, run: Run) -> Crowd:
+        """Return a crowd that is about to come."""
+        return Crowd(
+            self.site.url,
+            self.study.definition,
+            people=run.people,
+            seconds=run.seconds,
+            pause_s=run.pause_s,
+            uses_outbox=run.uses_outbox,
+            headers={SIMULATION_HEADER: simulation_token(self.site.settings.secret_key())},
+            servers=self.servers,
+        )
+
+
+@contextlib.asynccontextmanager
+async def running(run: Run) -> AsyncIterator[Running]:
+    """Start a site, which is killed at the end."""
     with _database(run) as (folder, url, server):
-        site = LoadedSite(folder, url, study_name=run.study, processes=run.processes)
+        site = LoadedSite(
+            folder, url, study_name=run.study, processes=run.processes, program=run.program
+        )
         study = site.prepare()
         site.start()
         try:
             await site.wait()
-            crowd = Crowd(
-                site.url,
-                study.definition,
-                people=run.people,
-                seconds=run.seconds,
-                pause_s=run.pause_s,
-                uses_outbox=run.uses_outbox,
-                headers={SIMULATION_HEADER: simulation_token(site.settings.secret_key())},
-                servers=tuple(one.pid for one in (site.process, server) if one is not None),
-            )
-            timings = await crowd.run(report)
+            programs = tuple(one.pid for one in (site.process, server) if one is not None)
+            yield Running(site, study, programs)
         finally:
             site.kill()
+
+
+async def measure(run: Run, *, report: Callable[[int], None] = lambda _done: None) -> Figures:
+    """Start a site, let a crowd at it, compare what it acknowledged with what it stored."""
+    async with running(run) as place:
+        crowd = place.crowd(run)
+        timings = await crowd.run(report)
+        place.site.kill()
         return figures_of(
             timings,
-            lost=_lost(site, study, crowd),
+            lost=_lost(place.site, place.study, crowd),
             database=run.database,
             processes=run.processes,
             fsync=run.fsync,

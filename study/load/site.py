@@ -31,6 +31,7 @@ from study.settings import Settings
 
 UP_S: Final = 120.0
 NAME: Final = "load"
+PROGRAM: Final = ("-m", "study")
 
 
 class SiteError(RuntimeError):
@@ -46,6 +47,7 @@ class LoadedSite:
     study_name: str = "thesis"
     processes: int = 1
     environment: Mapping[str, str] = field(default_factory=dict)
+    program: tuple[str, ...] = PROGRAM
     port: int = 0
     process: subprocess.Popen[bytes] | None = None
 
