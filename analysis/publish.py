@@ -16,6 +16,7 @@ from analysis.charts.material import Material
 from analysis.charts.style import SIMULATED
 from analysis.coding import read_codes
 from analysis.cost import read_bench
+from analysis.decision.effect_sentences import effect_answers
 from analysis.decision.margins import Margins
 from analysis.decision.sentences import answer
 from analysis.descriptive import answered
@@ -32,6 +33,8 @@ from analysis.sections import (
     text_section,
     weights_of,
 )
+
+POLICY = "lod_policy.json"
 
 
 @dataclass(frozen=True)
@@ -76,9 +79,7 @@ def analyse(
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     audit = audit_design(shown_clips(tables.ratings, tables.comparisons))
-    inference = infer(
-        tables, margins=margins, weights=weights_of(tables) or None, costs=costs
-    )
+    inference = infer(tables, margins=margins, weights=weights_of(tables) or None, costs=costs)
     found = tuple(findings(tables, costs))
     parts = Parts(
         audit=audit,
@@ -95,10 +96,15 @@ def analyse(
     files = draw_charts(material)
     for name, table in numbers.items():
         files[f"{name}.csv"] = csv_bytes(table, is_simulated=tables.is_simulated)
+    if inference.policy is not None:
+        files[POLICY] = inference.policy.text().encode()
     rated = answered(tables.ratings)
     summary = Summary(
         findings=found,
-        verdicts=tuple((own.distance, answer(own)) for own in inference.decisions),
+        verdicts=(
+            *((own.distance, answer(own, costs)) for own in inference.decisions),
+            *effect_answers(inference.effects, costs),
+        ),
         limits=(*limits(tables, audit, inference), *inference.warnings()),
         design=tuple(audit.facts()),
         quality=tuple(quality_statements(tables)),
