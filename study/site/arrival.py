@@ -19,7 +19,7 @@ from study.data.studies import Study
 from study.design.recruiting import readable
 from study.site.access import PARTICIPANT_COOKIE, redirect, remember
 from study.site.place import Here
-from study.site.signatures import ARRIVAL_S, keyed_hash, read_arrival, sign_arrival
+from study.site.signatures import ARRIVAL_S, keyed_hash, keyed_token, read_arrival, sign_arrival
 
 ARRIVAL_COOKIE: Final = "ocularist_arrival"
 
@@ -75,7 +75,7 @@ def person_key(secret: str, study: Study, values: Mapping[str, str]) -> str | No
 
 def token_of(secret: str, study: Study, ticket: str) -> str:
     """Return the token of whom a ticket enrols: known from the ticket to this site alone."""
-    return keyed_hash(secret, "ticket", study.key, ticket)
+    return keyed_token(secret, "ticket", study.key, ticket)
 
 
 def to_store(secret: str, study: Study, values: Mapping[str, str]) -> dict[str, str]:

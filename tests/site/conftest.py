@@ -250,7 +250,8 @@ class Guest:
     """A browser without scripts: keeps cookies, follows redirects, remembers its last page."""
 
     def __init__(self, url: str, **headers: str) -> None:
-        self.client = httpx.Client(base_url=url, follow_redirects=True, headers=headers)
+        # A loaded machine is no failure.
+        self.client = httpx.Client(base_url=url, follow_redirects=True, headers=headers, timeout=60)
         self.page = httpx.Response(204)
 
     def get(self, path: str) -> httpx.Response:

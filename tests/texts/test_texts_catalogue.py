@@ -85,7 +85,7 @@ def test_a_number_chooses_the_form_of_its_language(language: str, count: int, sa
 
 def test_values_are_escaped_on_a_page_and_links_are_not() -> None:
     hostile = ENGLISH.markup("frame.contact", name="<b>{x}</b>")
-    assert hostile == "Questions? &lt;b&gt;{x}&lt;/b&gt;"
+    assert hostile == "Questions? Please ask &lt;b&gt;{x}&lt;/b&gt;"
     link = ENGLISH.markup("landing.someone_else", link=Markup('<a href="/next">x</a>'))
     assert link.endswith('<a href="/next">x</a>.')
 
