@@ -18,6 +18,7 @@ from analysis.observers import Stimulus
 from analysis.publish import Summary
 from analysis.reading import Tables, tables_from
 from analysis.simulated import simulate_tables
+from renderer.lod.policy import read_policy
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +66,15 @@ def test_every_table_is_labelled_simulated(published: Summary) -> None:
         frame = pd.read_csv(path)
         assert frame["simulated"].all(), path.name
         assert len(frame) or path.name in empty, path.name
+
+
+def test_the_policy_is_written_for_the_renderer_to_read(published: Summary) -> None:
+    (path,) = (path for path in published.files if path.name == "lod_policy.json")
+    file = read_policy(path)
+    assert file.policy.steps[-1].lod == "ultra"  # without equal pairs nothing less is shown
+    assert file.provenance["simulated"] is True
+    assert file.provenance["people"] == 10
+    assert file.evidence[-1].ms == 155.0  # a frame's 310 ms for two eyes
 
 
 class _References(HTMLParser):
