@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.stats import f as f_law
+from scipy.special import fdtri
 
 _TAIL: Final = 0.975
 
@@ -56,7 +56,7 @@ def _icc_bounds(
     b = 1 + k * icc * (n - 1) / (n * (1 - icc))
     parts = (a * msc) ** 2 / (k - 1) + (b * mse) ** 2 / ((n - 1) * (k - 1))
     freedom = (a * msc + b * mse) ** 2 / parts
-    below, above = f_law.ppf(_TAIL, n - 1, freedom), f_law.ppf(_TAIL, freedom, n - 1)
+    below, above = fdtri(n - 1, freedom, _TAIL), fdtri(freedom, n - 1, _TAIL)
     noise = k * msc + (k * n - k - n) * mse
     low = n * (msr - below * mse) / (below * noise + n * msr)
     high = n * (above * msr - mse) / (noise + n * above * msr)

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from scipy.stats import rankdata
-from scipy.stats import t as t_law
+from scipy.special import stdtrit
 
 from analysis.agreement import Coefficient
 
@@ -62,7 +62,7 @@ def krippendorff(
     units, raters = (np.unique(x[pairable], return_inverse=True)[1] for x in (units, raters))
     if not units.size:
         return Coefficient(), Coefficient()
-    rank = rankdata(values[pairable])
+    rank = pd.Series(values[pairable]).rank().to_numpy()
     rank = (rank - rank.mean()) / rank.size
     own = _Units(*(np.bincount(units, rank**power).astype(float) for power in (0, 1, 2)))
     sums = (own.disagreement().sum(), own.count.sum(), own.total.sum(), own.square.sum())
@@ -99,7 +99,7 @@ def _jackknife(
     pseudo = n * value - (n - 1) * without[np.isfinite(without)]
     if pseudo.size < 3 or np.ptp(pseudo) == 0:
         return np.nan, np.nan
-    half = t_law.ppf(_TAIL, pseudo.size - 1) * pseudo.std(ddof=1) / np.sqrt(pseudo.size)
+    half = stdtrit(pseudo.size - 1, _TAIL) * pseudo.std(ddof=1) / np.sqrt(pseudo.size)
     return float(value - half), float(min(value + half, 1.0))
 
 

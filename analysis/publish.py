@@ -67,12 +67,14 @@ def analyse(
     bench: str | Path | None = None,
     margins: Margins | None = None,
     codes: str | Path | None = None,
+    processes: int = 1,
 ) -> Summary:
     """Write every chart, table and the report into the folder ``out`` and return the findings.
 
     ``bench`` is the path of ``bench.json``, which adds what each LoD costs; ``margins`` are what
     counts as no loss (without, what the study declared); ``codes`` is a CSV file of remarks coded
-    by hand. Raises TableError for its faults, before anything is written.
+    by hand; with two ``processes`` a second one helps to draw. Raises TableError for its faults,
+    before anything is written.
     """
     costs = read_bench(bench) if bench is not None else None
     manual = read_codes(codes) if codes is not None else None
@@ -93,7 +95,7 @@ def analyse(
         numbers |= section.data
     material = Material(tables, costs, inference, numbers.get("verdict-sensitivity"))
     numbers |= {chart.name: chart.table(material) for chart in CHARTS}
-    files = draw_charts(material)
+    files = draw_charts(material, processes=processes)
     for name, table in numbers.items():
         files[f"{name}.csv"] = csv_bytes(table, is_simulated=tables.is_simulated)
     if inference.policy is not None:

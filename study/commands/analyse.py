@@ -6,6 +6,7 @@ From files it needs neither web framework nor database nor GL; only a database's
 from __future__ import annotations
 
 import argparse
+import os
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -77,7 +78,12 @@ def run(options: argparse.Namespace) -> int:
         confidence=options.confidence,
     )
     summary = analyse(
-        tables, options.out, bench=options.bench, codes=options.codes, margins=margins
+        tables,
+        options.out,
+        bench=options.bench,
+        codes=options.codes,
+        margins=margins,
+        processes=min(2, os.cpu_count() or 1),
     )
     for line in summary.lines():
         print("\n".join(textwrap.wrap(line, WIDTH, break_on_hyphens=False)))
