@@ -62,7 +62,7 @@ def test_a_completed_session_shows_the_studys_code_and_the_way_back(guest: Any) 
     assert "C1DONE" not in guest.page.text  # nothing before the last answer is stored
     finish(guest)
     assert guest.at == "/thanks"
-    assert '<p class="code" dir="ltr" id="completion-code">C1DONE</p>' in guest.page.text
+    assert '<p class="code kept" dir="ltr" id="completion-code">C1DONE</p>' in guest.page.text
     assert 'href="https://app.prolific.com/submissions/complete?cc=C1DONE"' in guest.page.text
     assert "Back to Prolific" in guest.page.text
     assert "names your answers" not in guest.page.text  # a code for all names nobody
