@@ -18,6 +18,7 @@ from analysis.coding import read_codes
 from analysis.cost import read_bench
 from analysis.decision.effect_sentences import effect_answers
 from analysis.decision.margins import Margins
+from analysis.decision.policy_sentences import policy_answer
 from analysis.decision.sentences import answer
 from analysis.descriptive import answered
 from analysis.inference import infer
@@ -35,6 +36,7 @@ from analysis.sections import (
 )
 
 POLICY = "lod_policy.json"
+BY_SIZE = "by size"  # the answer along the iris's size stands beside those by distance
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,7 @@ def analyse(
         verdicts=(
             *((own.distance, answer(own, costs)) for own in inference.decisions),
             *effect_answers(inference.effects, costs),
+            *((BY_SIZE, policy_answer(own, costs)) for own in [inference.policy] if own),
         ),
         limits=(*limits(tables, audit, inference), *inference.warnings()),
         design=tuple(audit.facts()),

@@ -15,6 +15,7 @@ from analysis.curves.curve import MARGIN, NOTICED, RATED, SizeCurve, Threshold
 from analysis.curves.sizes import PIXELS
 from analysis.decision.margins import Margins
 from analysis.decision.policy import Policy, policy_of
+from analysis.decision.policy_sentences import policy_answer
 from analysis.table import EFFECTS
 from renderer.detail import Detail
 from renderer.lod.policy import parse_policy
@@ -164,3 +165,20 @@ def test_what_a_distance_shows_holds_where_a_curve_is_too_unsure() -> None:
     alone = policy({}, {}, verdicts=verdicts)  # a study without curves
     assert limits(alone) == {"low": 12.0, "high": 40.0, "ultra": None}
     assert [step.interval_px for step in alone.steps] == [(12.0, 40.0), (40.0, 160.0), None]
+
+
+def test_the_answer_along_size_names_limits_costs_and_reasons() -> None:
+    made = policy({"low": (20.0, 40.0), "high": (200.0, np.inf)}, ALL, costs=costs())
+    gap = "\N{NO-BREAK SPACE}"
+    text = policy_answer(made, costs())
+    assert text.startswith(f"high is enough up to an iris of 200{gap}px (undecided from there to ")
+    assert f"; ultra above, 230{gap}ms of a frame per eye (229{gap}ms to 231{gap}ms)" in text
+    assert "; medium: along pixels it is not known how it is rated; low: not tested after" in text
+    plain = policy_answer(policy(ALL, ALL))
+    assert plain == (
+        f"low is enough up to an iris of 20{gap}px (undecided from there to 40{gap}px), medium is "
+        f"enough up to an iris of 60{gap}px (undecided from there to 90{gap}px) and high is enough "
+        f"up to an iris of 200{gap}px (undecided from there to 350{gap}px); ultra above."
+    )
+    nothing = policy_answer(policy({}, {}, verdicts={"high": {12.0: False}}))
+    assert nothing.startswith("at no size is a LoD below ultra shown to be enough (high: along")
