@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from analysis.deciding import decisions_of
 from analysis.decision import verdicts
 from analysis.decision.verdicts import Decision, Verdict
-from analysis.inference import decisions_of
 from analysis.observers import Stimulus
 from analysis.population import POPULATION
 from analysis.reading import Tables, tables_from
