@@ -7,9 +7,12 @@ they have for ever.
 
 from __future__ import annotations
 
+import os
 import threading
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any
 
 from renderer.manifest import MANIFEST_NAME, ClipRecord, Manifest, read_manifest
@@ -31,6 +34,12 @@ class ClipShelf:
         record = self._manifest.clips.get(clip_id)
         return record if record is not None and self._is_whole(record) else None
 
+    def records(self, clip_ids: Iterable[str]) -> list[ClipRecord]:
+        """Return the records of those of many clips whose whole files are there, in order."""
+        self._refresh()
+        found = (self._manifest.clips.get(clip_id) for clip_id in clip_ids)
+        return [record for record in found if record is not None and self._is_whole(record)]
+
     def file(self, name: str) -> Path | None:
         """Return the file of a public name, or None."""
         self._refresh()
@@ -38,16 +47,18 @@ class ClipShelf:
         return self.folder / record.file if record and self._is_whole(record) else None
 
     def _is_whole(self, record: ClipRecord) -> bool:
-        path = self.folder / record.file
-        return path.is_file() and path.stat().st_size == record.file_bytes
+        try:
+            found = os.stat(f"{self.folder}/{record.file}")  # noqa: PTH116 - at a third of the price
+        except OSError:
+            return False
+        return S_ISREG(found.st_mode) and found.st_size == record.file_bytes
 
     def _refresh(self) -> None:
-        path = self.folder / MANIFEST_NAME
         try:
-            stat = path.stat()
+            found = os.stat(f"{self.folder}/{MANIFEST_NAME}")  # noqa: PTH116 - as above
         except FileNotFoundError:
             return
-        stamp = (stat.st_mtime_ns, stat.st_ino)
+        stamp = (found.st_mtime_ns, found.st_ino)
         with self._lock:
             if stamp != self._stamp:
                 self._manifest = read_manifest(self.folder)

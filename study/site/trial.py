@@ -138,8 +138,8 @@ def _steps(every: tuple[Trial, ...], current: Trial) -> list[str]:
 
 def _to_come(here: Place, every: tuple[Trial, ...], current: Trial) -> list[str]:
     """Return address and length of the clips that come later, for the preloader."""
-    records = (here.clips.record(one.clip_id) for one in every if one.position > current.position)
-    return [f"{clip_url(record)} {record.file_bytes}" for record in records if record is not None]
+    records = here.clips.records(one.clip_id for one in every if one.position > current.position)
+    return [f"{clip_url(record)} {record.file_bytes}" for record in records]
 
 
 def _missing(request: Request, here: Place, visitor: Visitor, found: Trial) -> Response:
