@@ -112,6 +112,17 @@ def test_the_overview_counts_real_and_simulated_people_apart(site: Any, ada: Any
     assert 'class="simulated">SIMULATED' in page
 
 
+def test_trials_whose_frames_nobody_could_count_are_told_apart(ada: Any, guest: Any) -> None:
+    guest.walk_to_trial()
+    guest.watch()
+    guest.finish()
+    guest.watch(counted_by="callbacks", presented_frames=10)  # as Firefox on a slow computer
+    guest.finish()
+    page = ada.get("/researcher").text
+    assert tile(page, "Certified")[0] == "–"
+    assert "0 of 0 trials, of 1 unknown" in page
+
+
 def test_people_are_listed_with_their_place_and_label(site: Any, ada: Any, guest: Any) -> None:
     simulate(site.db, site.study.definition, participants=1, seed=1)
     guest.walk_to_trial()
