@@ -1,4 +1,4 @@
-"""P values adjusted for how many are looked at: Holm for decisions, Benjamini-Hochberg to explore.
+"""P values adjusted for how many decisions they belong to.
 
 A missing p value stays missing and does not count.
 """
@@ -20,17 +20,6 @@ def holm(p: ArrayLike) -> Floats:
     m = order.size
     steps = np.maximum.accumulate(values[order] * (m - np.arange(m)))
     return _back(steps, order, known)
-
-
-def benjamini_hochberg(p: ArrayLike) -> Floats:
-    """Adjust p values so that the expected share of false alarms among findings keeps its level.
-
-    The j-th smallest of m becomes min_{i>=j} m p_(i) / i (Benjamini and Hochberg 1995).
-    """
-    values, order, known = _sorted(p)
-    m = order.size
-    scaled = values[order] * m / np.arange(1, m + 1)
-    return _back(np.minimum.accumulate(scaled[::-1])[::-1], order, known)
 
 
 def _sorted(p: ArrayLike) -> tuple[Floats, NDArray[np.intp], NDArray[np.bool_]]:
