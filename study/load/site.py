@@ -97,7 +97,7 @@ class LoadedSite:
             arguments += ["--processes", str(self.processes)]
         with (self.folder / "log").open("ab") as log:
             self.process = subprocess.Popen(
-                [*ending_with_parent(), sys.executable, "-m", "study", *arguments],
+                [*ending_with_parent(), sys.executable, *self.program, *arguments],
                 env={**os.environ, **self.environment, "OCULARIST_DATABASE": self.database_url},
                 stdin=subprocess.DEVNULL,
                 stdout=log,
