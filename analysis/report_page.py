@@ -14,11 +14,19 @@ from analysis.audit import Audit
 from analysis.charts import CHARTS
 from analysis.charts.style import SIMULATED
 from analysis.cost import Costs
+from analysis.decision.pareto import pareto_sentences
+from analysis.decision_tables import effects_table, joint_table, policy_table, thresholds_table
 from analysis.inference import Inference
 from analysis.inference_tables import inference_tables
 from analysis.methods import methods
 from analysis.reading import Tables
-from analysis.report_tables import comparison_tables, design_table, quality_tables, rating_tables
+from analysis.report_tables import (
+    ReportTable,
+    comparison_tables,
+    design_table,
+    quality_tables,
+    rating_tables,
+)
 from analysis.sections import Section
 
 if TYPE_CHECKING:
@@ -52,15 +60,18 @@ def report_page(
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    own = parts.inference
     studies = tables.ratings[["study", "study_version"]].dropna(how="all").drop_duplicates()
     return environment.get_template(REPORT).render(
         summary=summary,
         study=", ".join(" ".join(row.dropna()) for _, row in studies.iterrows()),
         source=Path(tables.source).name,
         charts=_by_part(charts),
-        margins=parts.inference.margins.origins,
-        size_notes=parts.inference.curves.notes,
-        model_tables=inference_tables(parts.inference),
+        margins=own.margins.origins,
+        size_notes=own.curves.notes,
+        model_tables=_filled(*inference_tables(own), effects_table(own), joint_table(own)),
+        size_tables=_filled(thresholds_table(own), policy_table(own)),
+        cost_sentences=pareto_sentences(own.pareto),
         rating_tables=rating_tables(tables, parts.costs),
         comparison_tables=comparison_tables(tables),
         design_table=design_table(parts.audit),
@@ -70,6 +81,11 @@ def report_page(
         methods=methods(tables, parts.costs),
         label=SIMULATED,
     )
+
+
+def _filled(*tables: ReportTable) -> list[ReportTable]:
+    """Return the tables that have rows."""
+    return [table for table in tables if table.rows]
 
 
 def _by_part(charts: Mapping[str, bytes]) -> dict[str, list[dict[str, Any]]]:
