@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from importlib import resources
+from pathlib import Path
+
 import pytest
 
 from study.cli import main
@@ -24,6 +28,17 @@ def test_check_tells_files_exposures_and_minutes(capsys: pytest.CaptureFixture[s
     assert "each pairing with each iris 1 to 2 4 8" in exposures
     (visit,) = [line for line in exposures if line.startswith("- One visit has 24 clips")]
     assert "and takes about 14." in visit
+
+
+def test_check_says_where_attention_questions_stand(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert said(capsys, "lod")[4] == "Attention questions: attention after trial 6"
+    study = tmp_path / "study.toml"
+    text = (resources.files("study.design") / "definitions" / "lod.toml").read_text()
+    text = text.replace("after = 6\nexpected", "within = 15\nexpected")
+    study.write_text(re.sub(r"(?m)^translations = .*$", "", text))
+    assert said(capsys, str(study))[4] == "Attention questions: attention within trial 15"
 
 
 def test_irises_of_one_pairing_share_a_line(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,6 +12,7 @@ from study.commands.options import add_study, count
 from study.commands.pictures import check_pictures
 
 if TYPE_CHECKING:
+    from study.design.attention import Attention
     from study.design.definition import StudyDefinition
     from study.design.pairings import Clip
 
@@ -106,6 +107,8 @@ def summary(definition: StudyDefinition) -> Iterator[str]:
         f"{len(definition.about)} questions about the participant, {len(definition.questions)} "
         "after each clip"
     )
+    if definition.attention:
+        yield f"Attention questions: {', '.join(map(_attention_place, definition.attention))}"
     yield ""
     width = _width(definition)
     iris = "iris" if definition.irises else ""
@@ -118,6 +121,11 @@ def summary(definition: StudyDefinition) -> Iterator[str]:
         irises = ", ".join(one.iris for one in alike if one.iris is not None)
         yield f"{_clip_line(clip.pairing, clip, width)}{irises}{mark}".rstrip()
     yield ""
+
+
+def _attention_place(asked: Attention) -> str:
+    place = f"within trial {asked.within}" if asked.after is None else f"after trial {asked.after}"
+    return f"{asked.question.id} {place}"
 
 
 def _with_irises(definition: StudyDefinition) -> list[list[Clip]]:
