@@ -180,4 +180,4 @@ def _evidence(curves: Curves, margins: Margins) -> dict[str, Any]:
 
 def tenth(size: float) -> float:
     """Round down to a tenth of a pixel: never beyond what was shown."""
-    return float(np.floor(size * 10) / 10)
+    return float(np.floor(size * 10 + 1e-6) / 10)  # logarithms do not come back exactly
