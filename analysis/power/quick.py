@@ -3,7 +3,7 @@
 The report's own estimates are made once from one simulated study. Every further study of the same
 plan only brings other counts: its fits start where the first ended, on its grid. People differ in
 leniency alone here; their scatter and style, which the report's model has from 30 ratings a person
-on, take a hundred times as long and hardly ever change a verdict (docs/power.md says how often).
+on, take fifteen times as long and hardly ever change a verdict (docs/power.md says how often).
 """
 
 from __future__ import annotations

@@ -78,10 +78,11 @@ def shown() -> dict[str, Stimulus]:
     }
 
 
-def moved_by_spoilers(seed: int, clips: dict[str, Stimulus]) -> list[str]:
-    """Return what four spoilers among thirty change against the same study without them."""
-    kinds = dict(enumerate((SPOILERS[seed % 5 :] + SPOILERS[: seed % 5])[:4]))
-    frames = simulate_tables(clips, np.random.default_rng(seed), participants=30, spoilers=kinds)
+def moved_by_spoilers(seed: int, kinds: dict[int, str], *, people: int) -> list[str]:
+    """Return what spoilers change against the same study without them."""
+    frames = simulate_tables(
+        shown(), np.random.default_rng(seed), participants=people, spoilers=kinds
+    )
     spoilt = tables_from(frames)
     clean = without(spoilt, [f"S{i + 1:03}" for i in kinds])
     found = []
@@ -100,15 +101,30 @@ def moved_by_spoilers(seed: int, clips: dict[str, Stimulus]) -> list[str]:
     ]
 
 
+def four_in_thirty(seed: int) -> list[str]:
+    kinds = dict(enumerate((SPOILERS[seed % 5 :] + SPOILERS[: seed % 5])[:4]))
+    return moved_by_spoilers(seed, kinds, people=30)
+
+
 @pytest.mark.parametrize("seed", [1, 2])
 def test_four_spoilers_in_thirty_move_no_verdict(seed: int) -> None:
-    assert moved_by_spoilers(seed, shown()) == []
+    assert four_in_thirty(seed) == []
+
+
+@pytest.mark.parametrize("seed", [500, 501])
+def test_one_spoiler_of_each_kind_in_twenty_four_moves_no_verdict(seed: int) -> None:
+    assert moved_by_spoilers(seed, dict(enumerate(SPOILERS)), people=24) == []
 
 
 @pytest.mark.long
-def test_four_spoilers_hardly_ever_move_a_verdict() -> None:
-    moved = [moved_by_spoilers(seed, shown()) for seed in range(10, 30)]
+def test_spoilers_hardly_ever_move_a_verdict() -> None:
+    moved = [four_in_thirty(seed) for seed in range(10, 30)]
     assert sum(map(len, moved)) <= 2, moved  # of 80; a verdict on its margin may tip
+    kinds = dict(enumerate(SPOILERS))
+    each = [moved_by_spoilers(seed, kinds, people=24) for seed in range(510, 530)]
+    assert sum(map(len, each)) <= 3, each  # of 80, with a fifth of people spoiling
+    turned = [text for own in (*moved, *each) for text in own if "not shown" not in text]
+    assert turned == []  # never from equivalent to different or back
 
 
 def test_one_person_is_left_out_of_every_table(thesis_tables: Tables) -> None:

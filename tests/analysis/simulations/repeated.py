@@ -14,15 +14,25 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from scipy.special import ndtri
 
 sys.path.append(str(Path(__file__).parents[3]))
 
 from analysis.correlation import rank_correlations
+from analysis.curves.curve import MARGIN
+from analysis.curves.noticed import noticed_curves
+from analysis.curves.sizes import PIXELS
 from analysis.decision.margins import DEFAULT
 from analysis.estimates.preference import preference_of
 from analysis.observers import Stimulus
 from analysis.population import POPULATION
-from analysis.power.assumed import Assumed, named_truth
+from analysis.power.assumed import (
+    Assumed,
+    Differences,
+    changed,
+    named_truth,
+    sensitivity_of,
+)
 from analysis.power.plan import Plan
 from analysis.power.quick import Prepared, prepare
 from analysis.power.replicates import answers_of
@@ -60,10 +70,20 @@ class Setting:
     prepared: Prepared
 
 
+def truth_of(name: str, plan: Plan) -> Assumed:
+    """Return a truth by its name; "last-on-margin" lets only the cheapest LoD be at the margin."""
+    if name != "last-on-margin":
+        return named_truth(name, plan.stimuli, DEFAULT)
+    equal = named_truth("equal", plan.stimuli, DEFAULT)
+    lost = Differences(DEFAULT.realism_points, 0.0)
+    wanted = {(distance, STANDARD_LODS[0]): lost for distance in DISTANCES}
+    return changed(equal, name, best=dict.fromkeys(DISTANCES, BEST), wanted=wanted)
+
+
 def setting(people: int, truth: str) -> Setting:
     """Set up the repeated study."""
     plan = everybody_sees_all(people)
-    known = named_truth(truth, plan.stimuli, DEFAULT)
+    known = truth_of(truth, plan)
     rng = np.random.default_rng(20120831)
     return Setting(plan, known, prepare(plan, answers_of(plan, known, rng), rng))
 
@@ -133,6 +153,28 @@ def table_truths(own: Setting) -> dict[str, float]:
     return true
 
 
+def threshold_intervals(
+    people: int, rng: np.random.Generator
+) -> tuple[Intervals, dict[str, float]]:
+    """Return the sizes from which a quarter notice a LoD, in pixels, and the true ones."""
+    plan = everybody_sees_all(people, tuple(POPULATION.iris_px))
+    truth = named_truth("thesis", plan.stimuli, DEFAULT)
+    compared = as_tables(plan, answers_of(plan, truth, rng)).comparisons
+    found: Intervals = {}
+    for curve in noticed_curves(compared, PIXELS, rng, best=BEST, margins=DEFAULT):
+        for own in curve.thresholds:
+            if own.name == MARGIN and curve.lod != "high":  # few ever notice it
+                found[f"threshold {curve.lod}"] = (own.low, own.high)
+    wanted = sensitivity_of(DEFAULT.noticed_share)
+    true = {}
+    for rank, lod in enumerate(STANDARD_LODS[:2], start=1):
+        share = wanted / POPULATION.pair_sensitivity(rank, len(STANDARD_LODS))
+        octave = POPULATION.half_sensitivity_log2_px
+        octave += POPULATION.sensitivity_width_log2_px * float(ndtri(share))
+        true[f"threshold {lod}"] = 2.0**octave
+    return found, true
+
+
 def held(found: list[Intervals], true: Mapping[str, float]) -> dict[str, list[bool]]:
     """Say of every interval whether it holds the truth, by name; those without one left out."""
     told: dict[str, list[bool]] = defaultdict(list)
@@ -196,8 +238,18 @@ def report(people: int, studies: int, truth: str, *, with_tables: bool) -> Itera
         yield f"   {name}: {verdict} {100 * count / studies:.1f} %"
 
 
+def report_thresholds(people: int, studies: int) -> Iterator[str]:
+    """Yield how often intervals of the sizes from which a LoD is noticed hold the true one."""
+    made = [threshold_intervals(people, np.random.default_rng([5, i])) for i in range(studies)]
+    for name, own in held([found for found, _ in made], made[0][1]).items():
+        yield f"n={people} {name}: {100 * np.mean(own):.1f} % of {len(own)}"
+
+
 if __name__ == "__main__":
-    for line in report(
-        int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], with_tables="--tables" in sys.argv
-    ):
+    PEOPLE, STUDIES, TRUTH = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
+    if TRUTH == "thresholds":
+        LINES = report_thresholds(PEOPLE, STUDIES)
+    else:
+        LINES = report(PEOPLE, STUDIES, TRUTH, with_tables="--tables" in sys.argv)
+    for line in LINES:
         print(line, flush=True)
