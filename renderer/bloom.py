@@ -36,7 +36,7 @@ class Bloom:
         self._screens = [gl.vertex_array(each.gl_program, []) for each in self._programs]
 
     def blurred(self, radiance: moderngl.Texture) -> moderngl.Texture:
-        """Return a multisampled picture of radiance blurred: as bright, a quarter as wide."""
+        """Return a picture of radiance blurred: as bright, a quarter as wide."""
         self.gl.enable_only(moderngl.NOTHING)
         self._draw(0, self._narrow[0], u_radiance=radiance, u_px=FIRST_PX)
         for fine, coarse in zip(self._narrow, self._narrow[1:], strict=False):

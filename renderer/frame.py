@@ -17,7 +17,7 @@ from renderer.eye.cube_size import cube_px
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import EyeModel
 from renderer.lod.path import Places, details_of, places_of_clip, places_of_view, shares_of
-from renderer.picture import SAMPLES, Picture, Pixels, Radiance
+from renderer.picture import Picture, Pixels, Radiance
 from renderer.scene import Scene, build_scene, scene_key
 from renderer.view_passes import PASSES, ViewPasses
 
@@ -122,7 +122,7 @@ class FrameRenderer:
         pixels = self._picture.finish()
         visible = [0, 0]
         for eye, query in queries.items():
-            visible[eye] = int(query.samples) // SAMPLES
+            visible[eye] = int(query.samples)
         return Frame(pixels, (visible[0], visible[1]))
 
     def show(self, azimuth_deg: float, *, time_s: float = 0.0) -> None:
@@ -147,15 +147,21 @@ class FrameRenderer:
             self.spec, azimuth_deg, elevation_deg, distance_px=distance_px, eyes=self._drawn_eyes
         )
         places = places_of_view(self.spec, azimuth_deg, distance_px=distance_px)
-        self._draw(shown, time_s, places)
+        self._draw(shown, time_s, places, is_plain=True)
         return self._picture.radiance()
 
     def _draw(
-        self, shown: tuple[View, ...], time_s: float, places: Places | None
+        self,
+        shown: tuple[View, ...],
+        time_s: float,
+        places: Places | None,
+        *,
+        is_plain: bool = False,
     ) -> dict[int, moderngl.Query]:
-        """Draw every view and return what counts each eye's visible samples.
+        """Draw every view and return what counts each eye's visible pixels.
 
-        Reading a count waits for the GPU, so it comes last.
+        ``is_plain`` smooths edges by the mean of radiance, not for the tone curve. Reading a count
+        waits for the GPU, so it comes last.
         """
         self.scene.crowd.light = self.scene.light  # another scene may have borrowed the crowd
         for eye, shares in enumerate(shares_of(self.spec, places)):
@@ -172,6 +178,12 @@ class FrameRenderer:
         for view in shown:
             self._picture.use_rectangle(view.rectangle)
             queries |= self._passes.draw(view, time_s, wireframe=self.wireframe)
+        for view in shown:
+            self._passes.draw_outlines(view, self._picture.outlines, wireframe=self.wireframe)
+        self._picture.smooth_edges(shown, is_plain=is_plain)
+        for view in shown:
+            self._picture.use_rectangle(view.rectangle)
+            self._passes.draw_hair(view)
         return queries
 
     @property

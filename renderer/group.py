@@ -68,10 +68,12 @@ class GroupRenderer:
         self, azimuth_deg: float = 0.0, *, time_s: float = 0.0, elevation_deg: float = 0.0
     ) -> Radiance:
         """Render one frame as linear scene-referred radiance, (height, width, 3) float32."""
-        self._draw(azimuth_deg, time_s, elevation_deg)
+        self._draw(azimuth_deg, time_s, elevation_deg, is_plain=True)
         return self._picture.radiance()
 
-    def _draw(self, azimuth_deg: float, time_s: float, elevation_deg: float) -> None:
+    def _draw(
+        self, azimuth_deg: float, time_s: float, elevation_deg: float, *, is_plain: bool = False
+    ) -> None:
         size = (self.spec.width, self.spec.height)
         view = group_view(size, azimuth_deg=azimuth_deg, elevation_deg=elevation_deg)
         self._picture.begin()
@@ -79,3 +81,6 @@ class GroupRenderer:
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         self.crowd.draw(**view.uniforms, time_s=time_s)
         self.surroundings.draw_background(view_matrix=view.view_matrix, projection=view.projection)
+        self._picture.outlines.begin(view.rectangle)
+        self.crowd.draw_outlines(view, self._picture.outlines)
+        self._picture.smooth_edges([view], is_plain=is_plain)

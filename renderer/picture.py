@@ -1,7 +1,8 @@
-"""The picture's targets: linear radiance with four samples per pixel, then 8-bit sRGB."""
+"""The picture's targets: linear radiance with one sample per pixel, then 8-bit sRGB."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final
 
 import moderngl
@@ -9,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.bloom import SHARE, Bloom
+from renderer.camera import View
+from renderer.edges import Edges
+from renderer.outlines import Outlines
 from renderer.program import build_program
 
-SAMPLES: Final = 4  # llvmpipe's maximum
 EXPOSURE: Final = 0.8  # one fixed exposure for every clip: no auto-exposure, fair pairs
 
 Pixels = npt.NDArray[np.uint8]
@@ -21,23 +24,28 @@ Radiance = npt.NDArray[np.float32]
 class Picture:
     """Draw between ``begin`` and ``finish``; ``finish`` returns the frame.
 
-    ``views`` of the same width stand side by side: none shines into the next.
+    ``views`` of the same width stand side by side: none shines into the next. What is opaque is
+    drawn twice, the second time into ``outlines``; ``smooth_edges`` stands between it and hair.
     """
 
     def __init__(self, gl: moderngl.Context, size: tuple[int, int], *, views: int = 1) -> None:
         self.gl = gl
         self.size = size
-        self._radiance = gl.texture(size, 4, samples=SAMPLES, dtype="f2")
-        depth = gl.depth_texture(size, samples=SAMPLES)
+        self._radiance = gl.texture(size, 4, dtype="f2")
+        depth = gl.depth_texture(size)
+        depth.compare_func = ""  # it is read as numbers
+        depth.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self.target = gl.framebuffer([self._radiance], depth)
-        self._mean = gl.framebuffer([gl.texture(size, 4, dtype="f2")])
+        self.outlines = Outlines(gl, size)
+        self._edges = Edges(gl, self._radiance, depth)
         self._display = gl.framebuffer([gl.texture(size, 4)])
         self._bloom = Bloom(gl, size, views=views)
         self._resolve = build_program(gl, "screen.vert", fragment="resolve.frag")
         self._screen = gl.vertex_array(self._resolve.gl_program, [])
 
     def begin(self) -> None:
-        """Clear the radiance target and make it the one that is drawn to."""
+        """Clear the targets and make the radiance's the one that is drawn to."""
+        self.outlines.clear()
         self.target.use()
         self.target.viewport = (0, 0, *self.size)
         self.target.scissor = (0, 0, *self.size)
@@ -50,14 +58,16 @@ class Picture:
         self.target.viewport = rectangle
         self.target.scissor = rectangle
 
+    def smooth_edges(self, views: Iterable[View], *, is_plain: bool = False) -> None:
+        """Smooth what ``outlines`` has edges of: for the tone curve, or as the mean of radiance."""
+        self._edges.smooth(views, self.outlines, exposure=EXPOSURE, is_plain=is_plain)
+
     def radiance(self) -> Radiance:
         """Return the linear radiance, (height, width, 3) float32 Rec. 709, first row on top.
 
-        A pixel is the plain mean of its samples: no exposure, no tone curve, no bloom.
+        No exposure, no tone curve, no bloom.
         """
-        self.target.scissor = (0, 0, *self.size)  # blits are cut by it too
-        self.gl.copy_framebuffer(self._mean, self.target)
-        values = np.frombuffer(self._mean.read(components=3, dtype="f4", alignment=1), np.float32)
+        values = np.frombuffer(self.target.read(components=3, dtype="f4", alignment=1), np.float32)
         return values.reshape(self.size[1], self.size[0], 3)[::-1].copy()
 
     def show(self) -> None:

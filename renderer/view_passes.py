@@ -9,6 +9,7 @@ import moderngl
 
 from renderer.camera import CameraUniforms, View
 from renderer.eye.eyes import Eyes
+from renderer.outlines import Outlines
 from renderer.scene import Scene
 
 # What a view is drawn by, in this order: what lets something through lies over what does not.
@@ -33,9 +34,10 @@ class ViewPasses:
     def draw(
         self, view: View, time_s: float, *, wireframe: bool = False
     ) -> dict[int, moderngl.Query]:
-        """Draw a view into the current target and return what counts each eye's visible samples.
+        """Draw what is opaque, and tears, into the current target.
 
-        ``wireframe`` draws the eyes as their triangles' edges.
+        Returns what counts each eye's visible pixels. ``wireframe`` draws the eyes as their
+        triangles' edges.
         """
         camera = view.uniforms
         scene = self._scene
@@ -52,11 +54,32 @@ class ViewPasses:
                 projection=view.projection,
                 is_smooth=self._is_approach,
             ),
-            "hair": lambda: scene.head.draw_hair(**camera, light=scene.light),
         }
         for name in self._names:
-            passes[name]()
+            if name in passes:
+                passes[name]()
         return queries
+
+    def draw_hair(self, view: View) -> None:
+        """Draw what lets something through over a view whose edges are smooth."""
+        if "hair" in self._names:
+            self._scene.head.draw_hair(**view.uniforms, light=self._scene.light)
+
+    def draw_outlines(self, view: View, outlines: Outlines, *, wireframe: bool = False) -> None:
+        """Draw where things of the last ``draw`` of a view end, as far as they are opaque."""
+        outlines.begin(view.rectangle)
+        if "head" in self._names:
+            self._scene.head.draw_outlines(outlines, **view.uniforms)
+        if "eyes" in self._names:
+            self._gl.wireframe = wireframe
+            with outlines.marking():
+                for eye in view.eyes:
+                    self._eyes.draw_outline(
+                        eye, view_matrix=view.view_matrix, projection=view.projection
+                    )
+            self._gl.wireframe = False
+        if "bystanders" in self._names:
+            self._scene.crowd.draw_outlines(view, outlines)
 
     def _draw_eyes(self, view: View, wireframe: bool) -> dict[int, moderngl.Query]:
         self._gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)

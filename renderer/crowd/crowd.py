@@ -13,6 +13,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.camera import View
 from renderer.clip import ClipSpec
 from renderer.crowd.bodies import build_figures
 from renderer.crowd.culling import in_view
@@ -23,6 +24,7 @@ from renderer.crowd.shares import light_shares
 from renderer.crowd.skinned import SkinnedFigures, eyes_last, joined_triangles
 from renderer.crowd.stage import STAGE, Member, members
 from renderer.light import Light
+from renderer.outlines import BYSTANDER, Outlines
 from renderer.program import build_program
 
 Floats = npt.NDArray[np.float64]
@@ -54,6 +56,7 @@ class Crowd:
         has_eyes = static_cube is not None and is_large
         self.figures = build_figures(cast, is_awake=has_eyes)
         self.eyes_drawn: list[DrawnEye] = []  # in the last picture
+        self._drawn: list[int] = []  # the figures in it
         self.shows_everybody = False  # also those whom only eyes are to see
         self._troupe = Troupe(self.figures)
         self._time_s: float | None = None
@@ -92,11 +95,11 @@ class Crowd:
         time_s: float,
     ) -> None:
         """Draw the bystanders that a view shows into the picture (see the stage's rule)."""
-        self.eyes_drawn = []
+        self.eyes_drawn, self._drawn = [], []
         if not self.figures:
             return
         self.pose(time_s)
-        seen = self.in_view(np.asarray(projection) @ np.asarray(view_matrix))
+        seen = self._drawn = self.in_view(np.asarray(projection) @ np.asarray(view_matrix))
         lines = int(self.gl.fbo.viewport[3])
         if self._eyes:
             self.eyes_drawn = self._eyes.choose(
@@ -112,6 +115,7 @@ class Crowd:
             projection=projection,
             camera_mm=camera_mm,
             eyeless={eye.figure for eye in self.eyes_drawn},
+            is_marked=True,
         )
         if self._eyes and self.eyes_drawn:
             self._eyes.draw(
@@ -122,6 +126,18 @@ class Crowd:
                 camera_mm=camera_mm,
                 lines=lines,
             )
+
+    def draw_outlines(self, view: View, outlines: Outlines) -> None:
+        """Draw depth and marks of what the last ``draw`` drew of the same view."""
+        if not self._drawn:
+            return
+        clip = np.asarray(view.projection) @ np.asarray(view.view_matrix)
+        self._marking.set(u_world_to_clip=clip)
+        with outlines.marking():
+            eyeless = {eye.figure for eye in self.eyes_drawn}
+            self._render(self._marked_vertices, self._drawn, eyeless)
+            if self._eyes and self.eyes_drawn:
+                self._eyes.draw_outlines(view_matrix=view.view_matrix, projection=view.projection)
 
     def in_view(self, world_to_clip: npt.NDArray[np.floating]) -> list[int]:
         """Return the numbers of those who are shown and may be seen in the last pose."""
@@ -140,22 +156,22 @@ class Crowd:
         projection: npt.NDArray[np.floating],
         camera_mm: npt.NDArray[np.floating],
         eyeless: Collection[int] = (),
+        is_marked: bool = False,
     ) -> None:
         """Draw figures by number in the pose of the last ``pose``, without changing state.
 
         Those who are ``eyeless`` get real eyes from elsewhere, so the painted ones are left out.
+        Alpha is coverage or, where it ``is_marked``, tells their parts.
         """
         self._skin(numbers)
         self._program.set(
             u_view_matrix=view_matrix,
             u_projection=projection,
             u_camera_mm=camera_mm,
+            u_marked=float(is_marked),
             **self.light.uniforms(),
         )
-        for number in numbers:
-            first, count = self._index_ranges[number]
-            count = self._without_eyes[number] if number in eyeless else count
-            self._vertices.render(moderngl.TRIANGLES, vertices=count, first=first)
+        self._render(self._vertices, numbers, eyeless)
 
     def draw_shadows(
         self,
@@ -170,6 +186,14 @@ class Crowd:
             numbers, sky=self.light.sky, view_matrix=view_matrix, projection=projection
         )
 
+    def _render(
+        self, vertices: moderngl.VertexArray, numbers: Sequence[int], eyeless: Collection[int]
+    ) -> None:
+        for number in numbers:
+            first, count = self._index_ranges[number]
+            count = self._without_eyes[number] if number in eyeless else count
+            vertices.render(moderngl.TRIANGLES, vertices=count, first=first)
+
     def _skin(self, numbers: Sequence[int]) -> None:
         missing = [number for number in numbers if number not in self._skinned]
         if missing:
@@ -181,20 +205,30 @@ class Crowd:
         self._meshes = SkinnedFigures(gl, figures)
         self._program = build_program(gl, "crowd.vert", fragment="crowd.frag")
         shares = [light_shares(figure, self.light.sky.sun_direction) for figure in figures]
-        fixed = [np.hstack([f.body.surface, s]) for f, s in zip(figures, shares, strict=True)]
+        fixed = [
+            np.column_stack([figure.body.surface, share, BYSTANDER + figure.body.parts])
+            for figure, share in zip(figures, shares, strict=True)
+        ]
         surfaces = gl.buffer(np.concatenate(fixed).astype(np.float32).tobytes())
         firsts = [figure.first_vertex for figure in figures]
         bodies = [figure.body for figure in figures]
         ordered = [eyes_last(body) if static_cube else (body.triangles, 0) for body in bodies]
         self._without_eyes = [3 * others for _, others in ordered]
         content, self._index_ranges = joined_triangles([rows for rows, _ in ordered], firsts)
+        index = gl.buffer(content)
         self._vertices = gl.vertex_array(
             self._program.gl_program,
             [
                 (self._meshes.posed, "3f 3f", "p_world", "n_world"),
-                (surfaces, "4f 2f", "in_surface", "in_light"),
+                (surfaces, "4f 2f 1f", "in_surface", "in_light", "in_mark"),
             ],
-            gl.buffer(content),
+            index,
+        )
+        self._marking = build_program(gl, "crowd_mark.vert", fragment="crowd_mark.frag")
+        self._marked_vertices = gl.vertex_array(
+            self._marking.gl_program,
+            [(self._meshes.posed, "3f 12x", "p_world"), (surfaces, "24x 1f", "in_mark")],
+            index,
         )
         self._shadows = CrowdShadows(gl, self._meshes)
         if static_cube:

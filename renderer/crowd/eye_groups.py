@@ -15,12 +15,14 @@ import numpy as np
 from renderer.cache import cached_array
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.eye.anatomy import shader_constants
 from renderer.eye.caustics import caustic_map
 from renderer.eye.geometry import Mesh, eye_mesh
 from renderer.eye.maps import iris_values, sclera_values
 from renderer.eye.model import APPARENT_GAIN, eye_constants
 from renderer.eye.silhouette import vertex_array
 from renderer.iris.source import Iris
+from renderer.outlines import EYE
 from renderer.program import Program, build_program
 
 # Six irises for everybody; half a second each to make at this size.
@@ -51,6 +53,10 @@ class EyeGroups:
         self._kinds: dict[Detail, tuple[Program, moderngl.VertexArray, dict[str, Any]]] = {}
         self._irises: dict[tuple[Detail, str], dict[str, Any]] = {}
         self._caustics: moderngl.TextureArray | None = None
+        self._outline = build_program(
+            gl, "crowd_eye.vert", fragment="mark.frag", constants=shader_constants()
+        )
+        self._bare: dict[Detail, moderngl.VertexArray] = {}
 
     def prepare(self, kinds: Iterable[Kind]) -> None:
         """Make what kinds of eyes need, in a state of its own: a cube may draw itself first."""
@@ -75,6 +81,14 @@ class EyeGroups:
         program, mesh, shared = self._kinds[detail]
         program.set(**shared, **self._irises[detail, iris], **values, u_first_eye=first)
         mesh.render(instances=count)
+
+    def draw_outlines(self, kind: Kind, *, first: int, count: int, values: dict[str, Any]) -> None:
+        """Draw the same eyes as bare triangles that mark their samples."""
+        detail = crowd_detail(kind[0])
+        if detail not in self._bare:
+            self._bare[detail] = vertex_array(self._gl, self._outline, crowd_mesh(detail))
+        self._outline.set(**values, u_first_eye=first, u_mark=EYE / 255.0)
+        self._bare[detail].render(instances=count)
 
     def _kind(self, detail: Detail) -> tuple[Program, moderngl.VertexArray, dict[str, Any]]:
         constants = eye_constants(detail, _SPEC) | {

@@ -15,7 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.crowd.eye_groups import EyeGroups
+from renderer.crowd.eye_groups import EyeGroups, Kind
 from renderer.crowd.figures import Figure
 from renderer.crowd.gaze import CrowdGaze, iris_px
 from renderer.crowd.skeletons import Floats
@@ -71,6 +71,7 @@ class CrowdEyes:
                 row = rows[figure.member.person.body] + eye
                 self._facts[2 * number + eye, :5] = 1.0 - 2.0 * eye, radius, sun, sky, row
         self._records = gl.buffer(reserve=MOST_EYES * 96)
+        self._drawn: list[tuple[Kind, int]] = []
 
     def choose(
         self,
@@ -127,9 +128,21 @@ class CrowdEyes:
         kinds = groupby(ordered, key=lambda eye: (eye.detail, self._iris(eye)))
         counts = [(kind, len(list(eyes))) for kind, eyes in kinds]
         self._groups.prepare(kind for kind, _ in counts)
+        self._drawn = counts
         first = 0
         for kind, count in counts:
             self._groups.draw(kind, first=first, count=count, values=values)
+            first += count
+
+    def draw_outlines(
+        self, *, view_matrix: npt.NDArray[np.floating], projection: npt.NDArray[np.floating]
+    ) -> None:
+        """Draw the eyes of the last ``draw`` as bare triangles that mark their samples."""
+        values = {"u_view_matrix": view_matrix, "u_projection": projection}
+        self._records.bind_to_uniform_block(_BINDING)
+        first = 0
+        for kind, count in self._drawn:
+            self._groups.draw_outlines(kind, first=first, count=count, values=values)
             first += count
 
     def _iris(self, eye: DrawnEye) -> str:

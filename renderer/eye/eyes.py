@@ -99,6 +99,20 @@ class Eyes:
                 self._set(models[0], camera, camera_mm, eye=eye)
                 models[0].mesh.render()
 
+    def draw_outline(self, eye: int, *, view_matrix: Any, projection: Any) -> None:
+        """Draw what ``draw`` draws as bare triangles that mark their samples."""
+        models = self._drawn(eye)
+        placed = {
+            "u_view_matrix": view_matrix,
+            "u_projection": projection,
+            "u_eye_to_world": models[0].values["u_eye_to_world"],
+        }
+        with self._between_lids(models[0], np.asarray(projection) @ np.asarray(view_matrix)):
+            if len(models) > 1:
+                self._morph(eye).draw_outline(placed, share=self._shares[eye][1][1])
+            else:
+                models[0].outline.draw(placed)
+
     def shade(self, eye: int, *, view_matrix: Any, projection: Any, camera_mm: Any) -> None:
         """Prepare ``draw`` for a camera, outside of its queries and wire frames.
 

@@ -22,7 +22,14 @@ from renderer.eye.flat_iris import flat_iris
 from renderer.eye.kept import Kept, Same, fingerprint
 from renderer.eye.lids import LidRims
 from renderer.eye.maps import iris_values, sclera_values, tissue_constants
-from renderer.eye.silhouette import Shaded, Silhouette, detail_mesh, hull_mesh, vertex_array
+from renderer.eye.silhouette import (
+    Outline,
+    Shaded,
+    Silhouette,
+    detail_mesh,
+    hull_mesh,
+    vertex_array,
+)
 from renderer.eye.subsurface import DEPTH_MARGIN, MAX_DEPTH_MM, MIN_LIGHT_COSINE
 from renderer.eye.sunlight import (
     RELIEF_SHADE_PX,
@@ -60,6 +67,7 @@ class EyeModel:
     mesh: moderngl.VertexArray
     values: dict[str, Any]
     shaded: Shaded
+    outline: Outline
     silhouette: Silhouette | None = None
 
 
@@ -136,7 +144,9 @@ def build_model(
         )
     shaded = Shaded(rims, has_depth=not is_fine)
     silhouette = Silhouette(gl, detail_mesh(detail)) if is_fine else None
-    return EyeModel(detail, program, mesh, values, shaded, silhouette)
+    return EyeModel(
+        detail, program, mesh, values, shaded, Outline(gl, detail_mesh(detail)), silhouette
+    )
 
 
 def _shades(

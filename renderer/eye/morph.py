@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 from renderer.detail import Detail
 from renderer.eye.geometry import Mesh
 from renderer.eye.silhouette import Shaded, detail_mesh
+from renderer.outlines import EYE
 from renderer.program import build_program
 
 Array = npt.NDArray[np.float64]
@@ -35,11 +36,14 @@ class Morph:
             shapes, triangles = (laid_on(end.positions, start), end.positions), end.triangles
         else:
             shapes, triangles = (start.positions, laid_on(start.positions, end)), start.triangles
-        corners = np.concatenate(shapes, axis=1).astype(np.float32)
-        self._array = gl.vertex_array(
-            self._program.gl_program,
-            [(gl.buffer(corners.tobytes()), "3f 3f", "in_coarse_mm", "in_fine_mm")],
-            gl.buffer(triangles.astype(np.int32).tobytes()),
+        self._outline = build_program(gl, "eye_morph.vert", fragment="mark.frag")
+        corners = gl.buffer(np.concatenate(shapes, axis=1).astype(np.float32).tobytes())
+        index = gl.buffer(triangles.astype(np.int32).tobytes())
+        self._array, self._bare = (
+            gl.vertex_array(
+                program.gl_program, [(corners, "3f 3f", "in_coarse_mm", "in_fine_mm")], index
+            )
+            for program in (self._program, self._outline)
         )
 
     def draw(self, values: dict[str, Any], *, coarse: Shaded, fine: Shaded, share: float) -> None:
@@ -47,6 +51,11 @@ class Morph:
         pictures = coarse.uniforms("u_coarse") | fine.uniforms("u_fine")
         self._program.set(**values, **pictures, u_share=share)
         self._array.render()
+
+    def draw_outline(self, values: dict[str, Any], *, share: float) -> None:
+        """Draw the same mesh as bare triangles that mark their samples."""
+        self._outline.set(**values, u_share=share, u_mark=EYE / 255.0)
+        self._bare.render()
 
 
 def laid_on(points: Array, mesh: Mesh) -> Array:

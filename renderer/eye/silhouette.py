@@ -12,6 +12,7 @@ from renderer.detail import Detail
 from renderer.eye.anatomy import APEX_MM, GLOBE_RADIUS_MM
 from renderer.eye.geometry import Mesh, eye_mesh
 from renderer.eye.lids import LidRims
+from renderer.outlines import EYE
 from renderer.program import Program, build_program
 
 Array = npt.NDArray[np.float64]
@@ -64,6 +65,19 @@ class Shaded:
     def uniforms(self, name: str) -> dict[str, Any]:
         """Return the picture as the sampler ``name`` and where it lies in the target."""
         return {name: self._texture, "u_view_origin_px": self._origin_px}
+
+
+class Outline:
+    """A mesh of an eye as bare triangles that mark their samples."""
+
+    def __init__(self, gl: moderngl.Context, mesh: Mesh) -> None:
+        self._program = build_program(gl, "eye.vert", fragment="mark.frag")
+        self._mesh = vertex_array(gl, self._program, mesh)
+
+    def draw(self, values: dict[str, Any]) -> None:
+        """Draw it into the current target."""
+        self._program.set(**values, u_mark=EYE / 255.0)
+        self._mesh.render()
 
 
 class Silhouette:

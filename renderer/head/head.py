@@ -29,6 +29,7 @@ from renderer.head.strands import blending, strand_programs
 from renderer.head.surfaces import SKIN_KINDS, cap_surface, cloth_surface, skin_surfaces
 from renderer.head.tears import TearLine
 from renderer.light import Light
+from renderer.outlines import CLOTH, HAIR, Outlines
 from renderer.program import build_program
 
 CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
@@ -46,6 +47,7 @@ class Head:
         self._programs = {
             "fabric": build_program(gl, "skin.vert", fragment="fabric.frag"),
             "depth": build_program(gl, "depth.vert", fragment="depth.frag"),
+            "mark": build_program(gl, "depth.vert", fragment="mark.frag"),
             "tears": build_program(gl, "tears.vert", fragment="tears.frag"),
         }
         self._skin_programs = [
@@ -53,7 +55,7 @@ class Head:
             for constants in SKIN_KINDS
         ]
         self._strand_programs = strand_programs(gl)
-        self._fornix = Fornix(gl)
+        self._fornix = Fornix(gl, self._programs["depth"])
         self._skin_maps = SkinMaps(gl, face_mesh())
         self._knit = TilePyramid(gl, knit_tile())
         self._face = face_mesh(poses)
@@ -88,16 +90,43 @@ class Head:
             "u_view_matrix": view_matrix,
             "u_projection": projection,
             "u_camera_mm": camera_mm,
+            "u_mark": 0.0,
             **light.uniforms(),
         }
         clip = projection @ view_matrix
-        meshes = self._close if self._is_close_to(distance) else self._distant
-        self._draw_skin([*meshes, self._mesh("cap")], view, clip, camera_mm=camera)
+        self._draw_skin(self._skin(distance), view, clip, camera_mm=camera)
+        self._draw_skin([self._mesh("cap")], view | {"u_mark": HAIR}, clip, camera_mm=camera)
         self._fornix.draw(clip, light.sky)
         fabric = self._programs["fabric"]
-        fabric.set(**view, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
+        fabric.set(**view | {"u_mark": CLOTH}, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
         self.gl.disable(moderngl.CULL_FACE)  # the roll neck shows its inside
         self._mesh("cloth").draw(fabric, clip)
+
+    def draw_outlines(
+        self,
+        outlines: Outlines,
+        *,
+        view_matrix: Matrix,
+        projection: Matrix,
+        camera_mm: npt.ArrayLike,
+    ) -> None:
+        """Draw the outlines of what ``draw`` draws; what is marked stays marked if drawn later."""
+        camera = np.asarray(camera_mm, dtype=float)
+        clip = projection @ view_matrix
+        program = self._programs["depth"]
+        program.set(u_world_to_clip=clip)
+        self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        for mesh in self._skin(float(np.linalg.norm(camera))):
+            mesh.draw(program, clip, camera_mm=camera)
+        self._fornix.draw_depth()
+        marking = self._programs["mark"]
+        with outlines.marking():
+            marking.set(u_world_to_clip=clip, u_mark=HAIR / 255.0)
+            self._mesh("cap").draw(marking, clip, camera_mm=camera)
+            marking.set(u_mark=CLOTH / 255.0)
+            self.gl.disable(moderngl.CULL_FACE)
+            self._mesh("cloth").draw(marking, clip)
+            self.gl.enable(moderngl.CULL_FACE)
 
     def draw_hair(
         self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
@@ -122,11 +151,9 @@ class Head:
             )
         clip = projection @ view_matrix
         camera = np.asarray(camera_mm, dtype=float)
-        # Conjunctiva fades into the sclera beneath, sample by sample: its solid part stands there
-        # already, and the samples of an edge between the two belong to the one or the other.
-        with blending(self.gl, by_sample=True):
-            self._draw_skin(self._veils, view, clip, camera_mm=camera)
         with blending(self.gl):
+            # Conjunctiva fades into the sclera beneath; its solid part stands there already.
+            self._draw_skin(self._veils, view, clip, camera_mm=camera)
             for mesh, _ in self._hair:
                 mesh.draw(self._strand_programs[mesh.kind], clip, camera_mm=camera)
 
@@ -179,6 +206,10 @@ class Head:
         self.gl.disable(moderngl.CULL_FACE)
         for mesh in meshes:
             mesh.draw(program, np.asarray(matrix, dtype=float))
+
+    def _skin(self, distance_mm: float) -> list[CellMesh]:
+        """Return the meshes of opaque skin that a camera at this distance gets."""
+        return self._close if self._is_close_to(distance_mm) else self._distant
 
     def _is_close_to(self, distance_mm: float) -> bool:
         return distance_mm < CLOSE_MM if self.is_close is None else self.is_close

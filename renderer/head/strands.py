@@ -19,9 +19,14 @@ from renderer.program import Program, build_program
 
 SILHOUETTE: Final = 0.3  # sine of how far beyond the horizon of its body hair may still be seen
 LAYOUT = ("3f 3f 4f 4f", ["in_position", "in_tangent", "in_ribbon", "in_colour"])
-MULTISAMPLE: Final = 0x809D
 ALPHA_KEEPING_TARGET: Final[Any] = (  # moderngl's stub knows only the pair
     moderngl.SRC_ALPHA,
+    moderngl.ONE_MINUS_SRC_ALPHA,
+    moderngl.ZERO,
+    moderngl.ONE,
+)
+PREMULTIPLIED_KEEPING_TARGET: Final[Any] = (
+    moderngl.ONE,
     moderngl.ONE_MINUS_SRC_ALPHA,
     moderngl.ZERO,
     moderngl.ONE,
@@ -46,24 +51,19 @@ def strand_programs(gl: moderngl.Context) -> dict[str, Program]:
 
 
 @contextmanager
-def blending(gl: moderngl.Context, *, by_sample: bool = False) -> Iterator[None]:
+def blending(gl: moderngl.Context) -> Iterator[None]:
     """Let hairs cover what was drawn before by their alpha; they hide nothing from each other.
 
-    A pixel's four samples get the same alpha, which hair.frag knows better than four samples do;
-    with ``by_sample`` only those that a triangle covers.
-    The framebuffer's own alpha stays what it was: full.
+    The framebuffer's own alpha stays what it was: it tells eyes from the rest.
     """
     gl.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
     gl.blend_func = ALPHA_KEEPING_TARGET
-    if not by_sample:
-        gl.disable_direct(MULTISAMPLE)
     target = gl.fbo
     target.depth_mask = False
     try:
         yield
     finally:
         target.depth_mask = True
-        gl.enable_direct(MULTISAMPLE)
         gl.disable(moderngl.BLEND)
 
 

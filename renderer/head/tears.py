@@ -19,7 +19,7 @@ from renderer.head.lid_fit import LidPatch
 from renderer.head.lid_pose import LidPose
 from renderer.head.lid_rims import rim, smooth_step
 from renderer.head.lid_shell import on_globe
-from renderer.head.strands import blending
+from renderer.head.strands import PREMULTIPLIED_KEEPING_TARGET, blending
 from renderer.program import Program
 from renderer.textures.noise import noise_1d
 
@@ -171,8 +171,8 @@ class TearLine:
         )
 
     def draw(self, **uniforms: npt.ArrayLike | moderngl.Texture) -> None:
-        """Draw over what lies behind, which is opaque: the framebuffer's alpha stays full."""
+        """Draw over what lies behind; the framebuffer's alpha stays as it was."""
         self._program.set(**{"u_share": 1.0, **uniforms})
         with blending(self._gl):
-            self._gl.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+            self._gl.blend_func = PREMULTIPLIED_KEEPING_TARGET
             self._array.render()

@@ -17,18 +17,15 @@ import numpy.typing as npt
 
 from renderer.camera import IRIS_PX, radius_of_px
 from renderer.clip import ClipSpec
-from renderer.context import identify, is_software
 from renderer.light import Sky
 from renderer.park.cube_lookup import halve
 from renderer.park.cube_maps import FACE_AXES, CubeTarget, read_face
 from renderer.park.environments import AMBIENT_PX, Environment, make_environment
-from renderer.park.uncovered import Box, Uncovered
 from renderer.program import build_program
 
 SMALLEST_LEVEL_PX: Final = 32
 CHAMBER_FACE_PX: Final = 16  # 5.6 degrees: as fine as the rays that gather light on the iris
 BACKGROUND_CUBE_PX: Final = 1024
-MOSTLY_HIDDEN_MM: Final = 800.0  # nearer cameras see the face and little else
 
 
 @dataclass(frozen=True)
@@ -67,7 +64,6 @@ class Surroundings:
         self._panoramas: dict[Defocus, moderngl.Texture] = {}
         self._background = build_program(gl, "direction.vert", fragment="background.frag")
         self._background_screen = gl.vertex_array(self._background.gl_program, [])
-        self._uncovered = Uncovered(gl) if is_software(identify(gl).renderer) else None
 
     @functools.cached_property
     def sky(self) -> Sky:
@@ -109,19 +105,8 @@ class Surroundings:
             u_farther_share=share,
         )
         self.gl.depth_func = "<="
-        if self._uncovered and distance_mm < MOSTLY_HIDDEN_MM:
-            self._draw_background_in(self._uncovered.tiles())
-        else:
-            self._background_screen.render(moderngl.TRIANGLES, vertices=3)
+        self._background_screen.render(moderngl.TRIANGLES, vertices=3)
         self.gl.depth_func = "<"
-
-    def _draw_background_in(self, boxes: list[Box]) -> None:
-        target = self.gl.fbo
-        kept = target.scissor
-        for box in boxes:
-            target.scissor = box
-            self._background_screen.render(moderngl.TRIANGLES, vertices=3)
-        target.scissor = kept
 
     def _draw_cube(self, size: int) -> moderngl.TextureCube:
         cube = CubeTarget(self.gl, size, levels=level_count(size))

@@ -1,15 +1,14 @@
-// Provides: the picture's radiance at a quarter of its width. Every other pixel, as on a chessboard,
-// and always its first sample: glints are wider than that, and software GL keeps each sample in a
-// plane of its own, so that a second one costs as much again.
+// Provides: the picture's radiance at a quarter of its width. Every other pixel, as on a chessboard:
+// glints are wider than that.
 
-uniform sampler2DMS u_radiance;
+uniform sampler2D u_radiance;
 uniform int u_views;
 uniform int u_px;      // picture pixels per texel
 
 out vec4 o_radiance;
 
 void main() {
-    ivec2 size = textureSize(u_radiance), texel = ivec2(gl_FragCoord.xy);
+    ivec2 size = textureSize(u_radiance, 0), texel = ivec2(gl_FragCoord.xy);
     int wide = size.x / u_views, columns = (wide + u_px - 1) / u_px;
     ivec2 first = ivec2((texel.x / columns) * wide + (texel.x % columns) * u_px, texel.y * u_px);
     ivec2 last = ivec2((texel.x / columns + 1) * wide, size.y) - 1;

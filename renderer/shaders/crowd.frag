@@ -9,8 +9,9 @@ in vec3 v_normal;
 in vec4 v_surface;
 in vec3 v_ambient;
 in float v_sun;
+flat in float v_mark;
 
-out vec4 o_radiance;   // premultiplied by coverage, which is 1
+out vec4 o_radiance;   // premultiplied by coverage, which is 1; in the picture 1 and the mark
 
 void main() {
     const float pi = 3.14159265359;
@@ -23,5 +24,5 @@ void main() {
         float lobe = (300.0 + 8.0) / (8.0 * pi) * pow(max(dot(n, h), 0.0), 300.0);
         radiance += 0.021 * (u_sun_irradiance * lobe * NoL + v_ambient / pi);
     }
-    o_radiance = vec4(radiance, 1.0);
+    o_radiance = vec4(radiance, 1.0 + v_mark);
 }

@@ -50,5 +50,5 @@ void main() {
     vec3 radiance = vec3(0.0);
     int seen = between_lids(v_p_eye) ? 1 : 0;
     for (int i = 0; i < seen; ++i) radiance = eye_radiance(surface_at(v_p_eye, v_n_eye));
-    f_radiance = vec4(radiance, 1.0);
+    f_radiance = vec4(radiance, 2.0);
 }

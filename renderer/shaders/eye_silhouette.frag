@@ -8,5 +8,5 @@ uniform ivec2 u_view_origin_px;    // lower left of the view in the target
 out vec4 f_radiance;
 
 void main() {
-    f_radiance = vec4(texelFetch(u_shaded, ivec2(gl_FragCoord.xy) - u_view_origin_px, 0).rgb, 1.0);
+    f_radiance = vec4(texelFetch(u_shaded, ivec2(gl_FragCoord.xy) - u_view_origin_px, 0).rgb, 2.0);
 }

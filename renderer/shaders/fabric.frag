@@ -9,6 +9,7 @@ in vec3 v_diffuse;
 in vec3 v_world;
 in vec4 v_detail;
 
+uniform float u_mark;          // for outlines
 uniform sampler2D u_knit;      // slope x, slope y, openness, fuzz
 
 out vec4 out_radiance;
@@ -24,5 +25,5 @@ void main() {
     float sun = max(dot(n_knit, u_sun_direction), 0.0) * sun_visibility(v_world, SHADOW_BIAS_MM);
     vec3 light = v_diffuse + u_sun_irradiance * (sun / 3.14159265);
     vec3 albedo = v_albedo * (0.4 + 0.75 * knit.z) * (0.7 + 0.6 * knit.w);
-    out_radiance = vec4(max(light, vec3(0.0)) * albedo + 0.6 * v_sheen, 1.0);
+    out_radiance = vec4(max(light, vec3(0.0)) * albedo + 0.6 * v_sheen, 1.0 + u_mark);
 }

@@ -1,7 +1,7 @@
-// Provides: the last pass. Scene-referred linear radiance (4 samples per pixel) becomes sRGB in
-// 8 bits: samples averaged, bloom, exposure, one fixed tone curve, dither. The first row is the top one.
+// Provides: the last pass. Scene-referred linear radiance becomes sRGB in 8 bits: bloom, exposure,
+// one fixed tone curve, dither. The first row is the top one.
 
-uniform sampler2DMS u_radiance;
+uniform sampler2D u_radiance;
 uniform sampler2D u_bloom;     // the same radiance, blurred
 uniform float u_bloom_share;
 uniform float u_exposure;
@@ -14,12 +14,6 @@ out vec4 o_colour;
 // his has 0.21: a fiftieth of the sky, all that a cornea mirrors, stays to be seen.
 vec3 tone_curve(vec3 u) {
     return clamp((u * (2.51 * u + 0.1163)) / (u * (2.4458 * u + 0.6162) + 0.1938), 0.0, 1.0);
-}
-
-// Karis 2013, "Tone mapping": samples averaged with weights that fall as they get brighter, as if
-// after the curve, so that one curve per pixel keeps edges against the sun smooth.
-vec4 weighted(vec3 u) {
-    return vec4(u, 1.0) / (1.0 + max(u.r, max(u.g, u.b)));
 }
 
 // IEC 61966-2-1 with its power of 1 / 2.4 fitted by three square roots (minimax, within 0.012 of an
@@ -43,11 +37,10 @@ float dither(ivec2 p) {
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
-    ivec2 size = textureSize(u_radiance);
+    ivec2 size = textureSize(u_radiance, 0);
     ivec2 at = ivec2(p.x, size.y - 1 - p.y);
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < 4; ++i) sum += weighted(texelFetch(u_radiance, at, i).rgb * u_exposure);
+    vec3 own = texelFetch(u_radiance, at, 0).rgb * u_exposure;
     vec3 bloom = textureLod(u_bloom, (vec2(at) + 0.5) / vec2(size), 0.0).rgb * u_exposure;
-    vec3 shown = tone_curve(mix(sum.rgb / sum.a, bloom, u_bloom_share));
+    vec3 shown = tone_curve(mix(own, bloom, u_bloom_share));
     o_colour = vec4(encode_srgb(shown) + dither(p) / 255.0, 1.0);
 }

@@ -21,6 +21,8 @@ uniform float u_colour_scale;  // from the relief's tiles to the colour's
 uniform float u_slope_range;   // slopes run from minus to plus this
 uniform vec2 u_lost_variance;  // of the slopes that the levels no longer show: face, lids
 
+uniform float u_mark;          // of what is drawn, for outlines
+
 out vec4 out_radiance;
 
 // How much of a facet's own light leaves where it entered: red has wandered off (d'Eon and Luebke
@@ -89,7 +91,7 @@ void main() {
     vec3 mirrored = u_sun_irradiance * (max(v_surface.y, 0.0) * cosine * lobes);
     vec3 sheen = v_sheen * (open * max(1.0 + 2.0 * upwards, 0.0));
     // Clamped: at edges of triangles varyings are extrapolated to the pixel's middle.
-    float cover = WET == 1 ? clamp(1.0 - (1.0 - dry) * (1.0 - lid), 0.0, 1.0) : 1.0;
+    float cover = WET == 1 ? clamp(1.0 - (1.0 - dry) * (1.0 - lid), 0.0, 1.0) : 1.0 + u_mark;
     vec3 radiance = max(albedo * max(diffuse, vec3(0.0)) + mirrored + sheen, vec3(0.0));
     out_radiance = vec4(radiance, cover);
 }

@@ -17,7 +17,7 @@ def glow(
     views: int = 1,
 ) -> np.ndarray:
     """Blur a black picture with one lit rectangle (x, y, width, height); (rows, columns)."""
-    radiance = gl.texture(size, 4, samples=4, dtype="f2")
+    radiance = gl.texture(size, 4, dtype="f2")
     target = gl.framebuffer([radiance])
     target.clear(0.0, 0.0, 0.0, 1.0)
     target.clear(100.0, 50.0, 0.0, 1.0, viewport=light)
