@@ -62,7 +62,7 @@ def comparison_tables(tables: Tables) -> list[ReportTable]:
 
 def design_table(audit: Audit) -> ReportTable:
     """Return how many clips show each LoD at each distance and on each side."""
-    at = tuple(f"distance={distance}" for distance in audit.distances)
+    at = tuple(f"at {distance}" for distance in audit.distances)
     rows = tuple(
         (
             lod,
