@@ -138,7 +138,7 @@ def test_nothing_is_lost_or_doubled_in_a_short_storm(
     site: LoadedSite, capsys: pytest.CaptureFixture[str]
 ) -> None:
     study = site.prepare()
-    kills = ("answer", "questionnaire", "form")
+    kills = ("consent", "answer", "questionnaire", "form")
     outcome = asyncio.run(live_through(site, study, people=6, share=0.3, kills=kills, seed=5))
     check_nothing_is_lost_or_doubled(site, study, outcome)
     with capsys.disabled():
