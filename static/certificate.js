@@ -11,6 +11,7 @@ import { isFirefox } from "./measures.js";
 import { isWindowed, screenFacts } from "./screen.js";
 
 const isOnGrid = (edge_px) => Math.abs(edge_px - Math.round(edge_px)) < 0.05;
+
 /** How much of a box lies inside the window, from 0 to 1. */
 function visibleShare(box) {
   const width = Math.min(box.right, innerWidth) - Math.max(box.left, 0);
@@ -20,9 +21,11 @@ function visibleShare(box) {
 
 const round = (value, digits = 1) => Math.round(value * 10 ** digits) / 10 ** digits;
 
-// Firefox (from 132) numbers frames in presentedFrames whether they reached the screen or not: drawing
-// ten times a second it told of every frame of a clip of thirty.
-/** What counts the frames of a video here: "frames", "callbacks", "quality", or nothing. */
+/**
+ * What counts the frames of a video here: "frames", "callbacks", "quality", or nothing. Firefox (from
+ * 132) numbers frames in presentedFrames whether they reached the screen or not: drawing ten times a
+ * second it told of every frame of a clip of thirty.
+ */
 function counter(video) {
   if (video.requestVideoFrameCallback) return isFirefox() ? "callbacks" : "frames";
   return video.getVideoPlaybackQuality ? "quality" : "";
