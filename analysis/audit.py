@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import pandas as pd
 
+from analysis.coverage import Coverage, coverage_of, linked_groups
 from analysis.ordering import natural
 from analysis.table import DISTANCES, STANDARD_LODS
 from analysis.wording import listed
@@ -40,7 +41,8 @@ class Audit:
     """A design's facts. ``cells`` counts the clips that show each LoD at each distance.
 
     ``linked`` holds, per distance shown, the groups of LoDs that comparisons link: one group is
-    best. ``sides`` counts the clips that show each LoD on the left and on the right.
+    best. ``sides`` counts the clips that show each LoD on the left and on the right; ``coverage``
+    says who saw what, where people took part.
     """
 
     distances: tuple[str, ...]
@@ -51,6 +53,7 @@ class Audit:
     clips: int
     mirrored: tuple[tuple[str, str], ...]
     sides: dict[str, tuple[int, int]]
+    coverage: Coverage | None = None
 
     @property
     def empty_cells(self) -> tuple[tuple[str, str], ...]:
@@ -70,6 +73,7 @@ class Audit:
         total = len(self.distances) * len(self.lods)
         seen = total - len(self.empty_cells)
         text = [f"{seen} of {total} combinations of LoD and distance were shown."]
+        text += self.coverage.facts() if self.coverage else []
         if self.catch_clips:
             text.append(f"Clips with the same LoD in both eyes: {self.catch_clips}.")
         if len(self.mirrored) > MOST_LISTED:
@@ -83,7 +87,8 @@ class Audit:
         """Say in sentences what this design cannot answer."""
         if not self.clips:
             return ["No pair of eyes was shown, so nothing is known about comparisons."]
-        return [*self._missing(), *self._unlinked(), *self._unknown()]
+        unlinked = self.coverage.limits() if self.coverage else []
+        return [*self._missing(), *self._unlinked(), *unlinked, *self._unknown()]
 
     def _missing(self) -> list[str]:
         missing = [text for text in map(self._missing_at, self.distances) if text]
@@ -154,7 +159,7 @@ def audit_design(clips: Iterable[ShownClip]) -> Audit:
         lods=tuple(lods),
         cells=dict(cells),
         linked={
-            d: _linked([c for c in shown if c.distance == d], lods)
+            d: linked_groups([(c.left_lod, c.right_lod) for c in shown if c.distance == d], lods)
             for d in distances
             if any(c.distance == d for c in shown)
         },
@@ -169,6 +174,12 @@ def audit_design(clips: Iterable[ShownClip]) -> Audit:
             for lod in lods
         },
     )
+
+
+def audit_tables(ratings: pd.DataFrame, comparisons: pd.DataFrame) -> Audit:
+    """Audit what was shown to those who took part, and who saw what."""
+    design = audit_design(shown_clips(ratings, comparisons))
+    return replace(design, coverage=coverage_of(ratings))
 
 
 def shown_clips(ratings: pd.DataFrame, comparisons: pd.DataFrame) -> list[ShownClip]:
@@ -190,16 +201,6 @@ def shown_clips(ratings: pd.DataFrame, comparisons: pd.DataFrame) -> list[ShownC
         for distance, clip, left, right in shown.astype(str).itertuples(index=False, name=None):
             seen.setdefault((distance, clip), ShownClip(clip, distance, left, right))
     return sorted(seen.values(), key=lambda clip: natural(clip.clip))
-
-
-def _linked(clips: Sequence[ShownClip], order: Sequence[str]) -> tuple[tuple[str, ...], ...]:
-    groups: list[set[str]] = []
-    for clip in clips:
-        pair = {clip.left_lod, clip.right_lod}
-        touching = [group for group in groups if group & pair]
-        groups = [group for group in groups if not group & pair]
-        groups.append(pair.union(*touching))
-    return tuple(tuple(sorted(group, key=order.index)) for group in groups)
 
 
 def _mirrored(clips: Sequence[ShownClip]) -> tuple[tuple[str, str], ...]:

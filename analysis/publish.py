@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from analysis.answer import Finding, findings
-from analysis.audit import audit_design, shown_clips
+from analysis.audit import audit_tables
 from analysis.charts import CHARTS
 from analysis.charts.drawing import draw_charts
 from analysis.charts.material import Material
@@ -82,7 +82,7 @@ def analyse(
     manual = read_codes(codes) if codes is not None else None
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
-    audit = audit_design(shown_clips(tables.ratings, tables.comparisons))
+    audit = audit_tables(tables.ratings, tables.comparisons)
     inference = infer(tables, margins=margins, weights=weights_of(tables) or None, costs=costs)
     found = tuple(findings(tables, costs))
     parts = Parts(

@@ -82,10 +82,17 @@ def order_lines(definition: StudyDefinition, code: str) -> Iterator[str]:
 
 def exposure_lines(definition: StudyDefinition, people: Sequence[int]) -> Iterator[str]:
     """Yield how often each thing is shown to so many people, and how evenly."""
-    from study.design.exposure import exposure_table
+    from study.design.exposure import exposure_table, people_until
 
     yield "How often each thing is shown, to so many people who all finish (rarest to most):"
     yield from (f"  {line}" for line in exposure_table(definition, people))
+    needed = {each: people_until(definition, each) for each in people}
+    if all(each == number for each, number in needed.items()):
+        yield "Everybody sees each LoD at each distance at which it is shown."
+        needed = {}
+    for each, number in needed.items():
+        after = f"after {number} took part" if number else "not even after 2000 took part"
+        yield f"Each LoD at each distance was seen by {each} people {after}."
     yield ""
 
 

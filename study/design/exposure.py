@@ -63,6 +63,25 @@ class Spread:
         return str(self.least) if self.least == self.most else f"{self.least} to {self.most}"
 
 
+def people_until(definition: StudyDefinition, each: int, *, most: int = 2000) -> int | None:
+    """Return how many people come until each LoD shown at a distance was seen by ``each`` of them.
+
+    None where more than ``most`` would have to come.
+    """
+    wanted = {
+        (clip.distance, lod) for clip in definition.trial_clips for lod in (clip.left, clip.right)
+    }
+    number = each
+    while number <= most:
+        counts: Counter[Hashable] = Counter()
+        for place, visit in enumerate(visits(definition, number), start=1):
+            counts.update({(c.distance, lod) for c in visit.clips for lod in (c.left, c.right)})
+            if place >= each and min(counts[cell] for cell in wanted) >= each:
+                return place
+        number *= 2
+    return None
+
+
 def spreads(definition: StudyDefinition, shown: Sequence[Visit]) -> list[Spread]:
     """Return how evenly things are spread over visits, one spread for each kind of thing."""
     found = []

@@ -1,6 +1,7 @@
 """The design audit: what was shown, what is linked, and what cannot be concluded."""
 
 from analysis.audit import ShownClip, audit_design, shown_clips
+from analysis.inference import infer
 from analysis.limits import limits
 from analysis.reading import Tables, tables_from
 
@@ -87,7 +88,7 @@ def test_pairings_are_found_from_ratings_alone(thesis_tables: Tables) -> None:
 
 def test_limits_tell_simulation_sample_and_side_by_side(thesis_tables: Tables) -> None:
     audit = audit_design(shown_clips(thesis_tables.ratings, thesis_tables.comparisons))
-    text = limits(thesis_tables, audit)
+    text = limits(thesis_tables, audit, infer(thesis_tables))
     assert text[0].startswith("The answers come from simulated observers.")
     assert text[1].startswith("10 people took part; differences between LoDs are known to about ±")
     assert any('"not shown to be rated lower" is not "equal"' in sentence for sentence in text)
@@ -96,10 +97,10 @@ def test_limits_tell_simulation_sample_and_side_by_side(thesis_tables: Tables) -
 def test_limits_without_ratings_begin_with_that(thesis_frames: dict[str, object]) -> None:
     ratings = thesis_frames["ratings"]
     empty = tables_from({"ratings": ratings.head(0)})
-    assert limits(empty, audit_design([]))[0] == (
+    assert limits(empty, audit_design([]), infer(empty))[0] == (
         "There are no ratings yet, so nothing can be said about realism."
     )
     missing = tables_from({"ratings": ratings.assign(rating=None)})
-    assert limits(missing, audit_design([]))[0] == (
+    assert limits(missing, audit_design([]), infer(missing))[0] == (
         "All ratings are missing, so nothing can be said about realism."
     )

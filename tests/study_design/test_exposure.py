@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 
 from study.design.definition import read_definition
-from study.design.exposure import Spread, exposure_table, spreads, visits
+from study.design.exposure import Spread, exposure_table, people_until, spreads, visits
 
 LOD, ABLATION = read_definition("lod"), read_definition("ablation")
 
@@ -76,3 +76,17 @@ def test_a_study_that_everybody_sees_whole_is_counted_too() -> None:
     lines = exposure_table(read_definition("thesis"), [4])
     assert lines[2].split("  ")[-1].strip() == "4"
     assert not any(line.startswith("each row") for line in lines)
+
+
+def test_so_many_people_come_until_each_cell_was_seen_so_often() -> None:
+    assert people_until(LOD, 12) == 12  # everybody sees each LoD at each distance
+    needed = people_until(ABLATION, 6)
+    assert needed is not None
+    seen = [
+        {(clip.distance, lod) for clip in visit.clips for lod in (clip.left, clip.right)}
+        for visit in visits(ABLATION, needed)
+    ]
+    cells = set.union(*seen)
+    assert min(sum(cell in own for own in seen) for cell in cells) == 6
+    assert min(sum(cell in own for own in seen[:-1]) for cell in cells) == 5
+    assert people_until(ABLATION, 6, most=6) is None
