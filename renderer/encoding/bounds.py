@@ -3,23 +3,50 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from typing import Final
 
 from renderer.clip import ClipSpec
 from renderer.encoding.comparison import Fidelity
-from renderer.encoding.encode import BOX_STEPS, BUFFER_S, QUALITY
+from renderer.encoding.encode import Rate
 
 MAX_BYTES: Final = 8_000_000  # of a clip of 5 s with 1920 x 1080 pixels or fewer
 REFERENCE_S: Final = 5.0
 REFERENCE_PX: Final = 1920 * 1080
 MAX_FLIP_SHARE: Final = 0.1
-FULL: Final = 0.97  # aim a little below the bound: the file has a head, the buffer is no wall
-FILLED: Final = 0.9  # of x264's rate buffer before the first frame
+FULL: Final = 0.98  # aim a little below the bound: the file has a head, the buffer is no wall
+# A player has the whole clip before it starts, so what the sides of an orbit leave over may go to
+# its middle: x264's rate buffer holds a large part of a clip, which H.264's level 4 allows (31
+# Mbit). It begins nine tenths full, and x264 keeps it half full as long as it looks ahead. A clip
+# that is hardly longer than it looks ahead (2 s) empties it, so that has a small one.
+LONG_S: Final = 4.0
+BUFFER_S: Final = {True: 3.0, False: 0.5}  # by whether a clip is long
+DRAINED: Final = {True: 0.4, False: 0.9}
 STEPS_PER_OCTAVE: Final = 5.0  # what doubles or halves a clip's file
 FINEST_BY: Final = 6.0  # steps; a picture of 720 lines then takes what one of 1080 does
 
-# How much finer the eyes can be than at macroscopic for as many bytes: they are smaller.
-FINER: Final = {"macroscopic": 0.0, "near": 4.8, "medium": 9.5, "far": 9.5}
+
+@dataclass(frozen=True, kw_only=True)
+class Fineness:
+    """How fine a distance's clips are made: x264's constant rate factor outside of the eyes' boxes,
+    how many steps finer the lids' opening and the lids are (6 halve the error), and the matrices.
+
+    H.264's own matrices (jvt) spare what FLIP sees least; where so fine a quantiser has no step
+    left to give, flat ones go further.
+    """
+
+    quality: float
+    eye_steps: float
+    lid_steps: float
+    matrices: str = "flat"
+
+
+FINENESS: Final = {
+    "macroscopic": Fineness(quality=26.0, eye_steps=21.0, lid_steps=0.0, matrices="jvt"),
+    "near": Fineness(quality=24.0, eye_steps=20.0, lid_steps=6.0),
+    "medium": Fineness(quality=24.0, eye_steps=24.0, lid_steps=8.0),
+    "far": Fineness(quality=24.0, eye_steps=24.0, lid_steps=8.0),
+}
 
 
 def max_bytes(spec: ClipSpec) -> int:
@@ -32,24 +59,23 @@ def max_bytes(spec: ClipSpec) -> int:
     return round(MAX_BYTES * seconds / REFERENCE_S * larger)
 
 
-def max_rate(spec: ClipSpec) -> float:
-    """Return the rate in bits per second that keeps a clip's file below ``max_bytes``.
+def max_rate(spec: ClipSpec) -> Rate:
+    """Return the rate that keeps a clip's file below ``max_bytes``.
 
-    What the full buffer holds at the start comes on top of it.
+    What is taken out of the buffer comes on top of it.
     """
     seconds = spec.frame_count / spec.fps
-    return FULL * 8 * max_bytes(spec) / (seconds + FILLED * BUFFER_S)
+    is_long = seconds >= LONG_S
+    drained_s = DRAINED[is_long] * BUFFER_S[is_long]
+    return Rate(FULL * 8 * max_bytes(spec) / (seconds + drained_s), BUFFER_S[is_long])
 
 
-def quality(spec: ClipSpec) -> float:
-    """Return the constant rate factor outside of the eyes: finer for a smaller picture."""
+def fineness(spec: ClipSpec) -> Fineness:
+    """Return how fine a clip is made: a smaller picture is finer and fills its bytes, too."""
     octaves = math.log2(REFERENCE_PX / (spec.width * spec.height))
-    return QUALITY - min(FINEST_BY, max(0.0, STEPS_PER_OCTAVE * octaves))
-
-
-def box_steps(spec: ClipSpec) -> float:
-    """Return how many steps finer the eyes are, so that a clip nearly fills its bytes."""
-    return BOX_STEPS + FINER[spec.distance]
+    finer = min(FINEST_BY, max(0.0, STEPS_PER_OCTAVE * octaves))
+    found = FINENESS[spec.distance]
+    return replace(found, quality=found.quality - finer)
 
 
 def missed_bounds(file_bytes: int, fidelity: Fidelity, *, limit: int) -> list[str]:

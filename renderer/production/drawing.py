@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Protocol
 
 from renderer.clip import ClipSpec
-from renderer.encoding.bounds import box_steps, max_rate, quality
+from renderer.encoding.bounds import fineness, max_rate
 from renderer.encoding.comparison import Comparison
 from renderer.encoding.encode import open_encoder
 from renderer.encoding.eye_boxes import eye_boxes
@@ -88,16 +88,17 @@ def draw_clip(
 
 def _encode(drawn: DrawnClip, *, source: FrameSource, hear: Progress) -> None:
     spec, digest = drawn.spec, hashlib.sha256()
+    fine = fineness(spec)
     frames = source.frames(spec)
     with (
         open_encoder(
             drawn.path,
             fps=spec.fps,
             size=(spec.width, spec.height),
-            boxes=eye_boxes(spec),
-            quality=quality(spec),
-            box_steps=box_steps(spec),
-            max_rate=max_rate(spec),
+            stretches=eye_boxes(spec, eye_steps=fine.eye_steps, lid_steps=fine.lid_steps),
+            quality=fine.quality,
+            matrices=fine.matrices,
+            rate=max_rate(spec),
             master=drawn.master,
         ) as encoder,
         Beside() as beside,

@@ -14,7 +14,7 @@ from typing import Any
 
 from renderer.camera import iris_px_of_frame
 from renderer.clip import ClipSpec
-from renderer.encoding.bounds import max_bytes, missed_bounds, quality
+from renderer.encoding.bounds import fineness, max_bytes, missed_bounds
 from renderer.encoding.comparison import Fidelity
 from renderer.lod.path import places_of_clip
 from renderer.manifest import ClipRecord
@@ -97,7 +97,7 @@ def _how_well(spec: ClipSpec, fidelity: Fidelity, *, file_bytes: int) -> dict[st
         "flip_share": fidelity.flip_share and round(fidelity.flip_share, 4),
         "flip_floor": fidelity.flip_floor and round(fidelity.flip_floor, 4),
         "flip_note": fidelity.flip_note,
-        "crf": round(quality(spec), 2),
+        "crf": round(fineness(spec).quality, 2),
         "max_bytes": max_bytes(spec),
         "missed": missed_bounds(file_bytes, fidelity, limit=max_bytes(spec)),
     }

@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from renderer.clip import ClipSpec
+from renderer.clip import DISTANCES, ClipSpec
 from renderer.detail import Detail
-from renderer.encoding.bounds import box_steps, max_bytes, max_rate, missed_bounds, quality
+from renderer.encoding.bounds import fineness, max_bytes, max_rate, missed_bounds
 from renderer.encoding.comparison import Fidelity
-from renderer.encoding.encode import BOX_STEPS, BUFFER_S, QUALITY
 
 SPEC = ClipSpec(left=Detail.uniform("low"), right=Detail.uniform("ultra"))
 LIMIT = 8_000_000
@@ -19,8 +18,13 @@ LIMIT = 8_000_000
 def fidelity(share: float | None = None, floor: float | None = None) -> Fidelity:
     lods = None if share is None else [0.3, 0.1]
     encoding = None if share is None else [0.3 * share, 0.1 * share]
-    signal = {"psnr_db": [40.0, 40.0], "ssim": [0.99, 0.99]}
-    return Fidelity(**signal, flip_encoding=encoding, flip_lods=lods, flip_floor=floor)
+    return Fidelity(
+        psnr_db=[40.0, 40.0],
+        ssim=[0.99, 0.99],
+        flip_encoding=encoding,
+        flip_lods=lods,
+        flip_floor=floor,
+    )
 
 
 def test_five_seconds_at_1080_lines_may_have_eight_megabytes() -> None:
@@ -55,17 +59,28 @@ def test_without_a_difference_only_the_size_counts() -> None:
     assert alike.flip_share is None
 
 
-@pytest.mark.parametrize("seconds", [0.1, 1.0, 5.0, 12.0])
-def test_the_rate_and_a_full_buffer_stay_below_the_bound(seconds: float) -> None:
+@pytest.mark.parametrize("seconds", [0.1, 1.0, 3.9, 5.0, 12.0])
+def test_the_rate_and_what_is_taken_from_the_buffer_stay_below_the_bound(seconds: float) -> None:
     spec = replace(SPEC, duration_s=seconds)
-    total = max_rate(spec) * (seconds + 0.9 * BUFFER_S) / 8
+    rate = max_rate(spec)
+    drained = 0.4 if seconds >= 4 else 0.9
+    total = rate.bits_per_s * (seconds + drained * rate.over_s) / 8
     assert 0.9 * max_bytes(spec) < total < max_bytes(spec)
+    if spec.duration_s == 5.0:
+        assert rate.bits_per_s * rate.over_s < 31.25e6  # H.264's level 4
 
 
-def test_smaller_eyes_and_pictures_are_encoded_finer() -> None:
-    near = replace(SPEC, distance="near")
-    assert box_steps(SPEC) == BOX_STEPS < box_steps(near)
-    assert quality(SPEC) == quality(near) == QUALITY
-    assert quality(SPEC.resized(1280, 720)) == pytest.approx(QUALITY - 5.85, abs=0.01)
-    assert quality(SPEC.resized(320, 180)) == QUALITY - 6.0
-    assert quality(SPEC.resized(3840, 2160)) == QUALITY
+def test_smaller_pictures_and_eyes_are_encoded_finer() -> None:
+    whole, near = fineness(SPEC), fineness(replace(SPEC, distance="near"))
+    assert whole.quality - whole.eye_steps > near.quality - near.eye_steps
+    assert fineness(SPEC.resized(1280, 720)).quality == pytest.approx(
+        whole.quality - 5.85, abs=0.01
+    )
+    assert fineness(SPEC.resized(320, 180)).quality == whole.quality - 6.0
+    assert fineness(SPEC.resized(3840, 2160)) == whole
+
+
+@pytest.mark.parametrize("distance", DISTANCES)
+def test_no_distance_asks_for_a_quantiser_that_there_is_not(distance: str) -> None:
+    fine = fineness(replace(SPEC, distance=distance))
+    assert fine.quality > fine.eye_steps - 1 > fine.lid_steps
