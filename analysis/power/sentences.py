@@ -56,7 +56,8 @@ def _distance(rows: pd.DataFrame) -> str:
     distance, right, reason = (own[0][key] for key in ("distance", "right_lod", "cannot_conclude"))
     if reason:
         return f"{distance}: no LoD can be named as the cheapest that is enough: {reason}."
-    row = next((row for row in own if row["right"] >= POWER), own[-1])
+    stays = [i for i in range(len(own)) if all(row["right"] >= POWER for row in own[i:])]
+    row = own[stays[0]] if stays else own[-1]
     wrong = share_text(own[-1] if right == own[-1]["best"] else row, "too_cheap")
     if right == row["best"]:
         return (
