@@ -20,9 +20,10 @@ from sqlalchemy.engine import URL
 from sqlalchemy.exc import ArgumentError, DataError, DBAPIError
 from sqlalchemy.orm import Session
 
+from study.data.batches import run
 from study.data.commits import GroupCommit
 from study.data.engines import DRIVER, make_engine, reading_engine
-from study.data.errands import Eyes, Make, look, run
+from study.data.errands import Eyes, Make, look
 from study.data.refusals import UnusablePayloadError
 
 T = TypeVar("T")

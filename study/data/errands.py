@@ -4,13 +4,14 @@ An errand yields a statement with its values and is sent the rows; it returns wh
 the same words run alone or among others in one transaction, straight on SQLite or, on PostgreSQL,
 all side by side in a pipeline: one way to the server and back for all of them.
 
-An errand asks first and writes last. One that raises before it has written takes nothing back; one
-that fails later is undone, and those beside it are run again without it.
+An errand asks first who sent it, for the row on which others about them wait, and writes last. One
+that raises before it has written takes nothing back; one that fails later is undone, and those
+beside it are run again without it (``study.data.batches``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -42,28 +43,13 @@ class Outcome:
         return self.value
 
 
-class _SpoiltError(Exception):
+class SpoiltError(Exception):
     """An errand failed after it wrote: the whole batch is taken back."""
-
-
-def run(connection: Connection, makes: Sequence[Make[Any]]) -> list[Outcome]:
-    """Run errands in the connection's transaction; an error is that of its errand alone."""
-    driver = _driver(connection)
-    if len(makes) > 1:
-        driver.execute("SAVEPOINT batch")
-        try:
-            outcomes = [_straight(connection, make) for make in makes]
-        except Exception:
-            driver.execute("ROLLBACK TO SAVEPOINT batch")
-        else:
-            driver.execute("RELEASE SAVEPOINT batch")
-            return outcomes
-    return [_apart(connection, make) for make in makes]
 
 
 def look(connection: Connection, make: Make[T]) -> T:
     """Run one errand that only reads; raises its error."""
-    found: T = _straight(connection, make).get()
+    found: T = straight(connection, make).get()
     return found
 
 
@@ -75,7 +61,7 @@ class Eyes:
 
     def look(self, make: Make[T]) -> T:
         """Run one errand that only reads; raises its error."""
-        driver = _driver(self._connection)
+        driver = driver_of(self._connection)
         driver.execute("BEGIN")
         try:
             return look(self._connection, make)
@@ -87,57 +73,58 @@ class Eyes:
         self._connection.close()
 
 
-def _apart(connection: Connection, make: Make[Any]) -> Outcome:
-    """Run one errand so that what it wrote can be taken back."""
-    driver = _driver(connection)
-    driver.execute("SAVEPOINT errand")
-    try:
-        outcome = _straight(connection, make)
-    except Exception as error:
-        driver.execute("ROLLBACK TO SAVEPOINT errand")
-        outcome = Outcome(error=_cause(error))
-    driver.execute("RELEASE SAVEPOINT errand")
-    return outcome
+@dataclass
+class Under:
+    """An errand under way."""
 
+    errand: Errand[Any]
+    has_written: bool = False
 
-def _cause(error: Exception) -> Exception:
-    cause = error.__cause__
-    return cause if isinstance(error, _SpoiltError) and isinstance(cause, Exception) else error
+    def go_on(self, found: Any) -> Ask | Outcome:
+        """Give it what was found; returns what it asks for next, or how it ended.
 
-
-def _straight(connection: Connection, make: Make[Any]) -> Outcome:
-    """Run one errand from its first statement to its last."""
-    errand, has_written, found = make(), False, None
-    while True:
+        Raises SpoiltError if it fails after it has written.
+        """
         try:
-            ask = errand.send(found)
+            ask = self.errand.send(found)
         except StopIteration as end:
             return Outcome(end.value)
         except Exception as error:
-            if has_written:
-                raise _SpoiltError from error
+            if self.has_written:
+                raise SpoiltError from error
             return Outcome(error=error)
-        has_written = has_written or not isinstance(ask, tuple) or ask[0].writes
-        found = _answer(connection, ask)
+        self.has_written = self.has_written or not isinstance(ask, tuple) or ask[0].writes
+        return ask
 
 
-def _answer(connection: Connection, ask: Ask) -> Any:
+def straight(connection: Connection, make: Make[Any]) -> Outcome:
+    """Run one errand from its first statement to its last."""
+    under = Under(make())
+    ask = under.go_on(None)
+    while not isinstance(ask, Outcome):
+        ask = under.go_on(answer(connection, ask))
+    return ask
+
+
+def answer(connection: Connection, ask: Ask) -> Any:
     """Run what an errand asks for; returns the rows, or what the function returned."""
     if not isinstance(ask, tuple):
-        return _in_session(connection, ask)
+        return in_session(connection, ask)
     statement, values = ask
-    driver, dialect = _driver(connection), connection.dialect
+    driver, dialect = driver_of(connection), connection.dialect
     try:
         return statement.rows(statement.send(driver, dialect, values), dialect)
     except dialect.loaded_dbapi.DataError as error:  # no column holds this
         raise UnusablePayloadError(f"no database can store this: {error}") from error
 
 
-def _driver(connection: Connection) -> Any:
+def driver_of(connection: Connection) -> Any:
+    """Return the driver's own connection."""
     return connection.connection.dbapi_connection
 
 
-def _in_session(connection: Connection, act: Callable[[Session], Any]) -> Any:
+def in_session(connection: Connection, act: Callable[[Session], Any]) -> Any:
+    """Call a function with a session in the connection's transaction."""
     with (
         Session(
             connection, expire_on_commit=False, join_transaction_mode="create_savepoint"

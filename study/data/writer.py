@@ -18,8 +18,9 @@ from weakref import WeakKeyDictionary
 
 from sqlalchemy import Connection
 
+from study.data.batches import run
 from study.data.database import Database
-from study.data.errands import Eyes, Make, Outcome, run
+from study.data.errands import Eyes, Make, Outcome
 
 T = TypeVar("T")
 MOST: Final = 100

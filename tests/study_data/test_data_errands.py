@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import re
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 from sqlalchemy import event, select
 
-from study.data import answers, errands, events, progress, views
+from study.data import answers, at_trial, batches, errands, events, progress, views
 from study.data.database import Database
 from study.data.errands import Errand, Make
 from study.data.prepared import Prepared, table_of
@@ -57,7 +58,7 @@ def keys(walk: Any) -> set[str]:
 
 def together(db: Database, *makes: Make[Any]) -> list[errands.Outcome]:
     with db.batch() as connection:
-        return errands.run(connection, makes)
+        return batches.run(connection, makes)
 
 
 def write_all(db: Database, *makes: Make[Any]) -> list[Any]:
@@ -78,6 +79,21 @@ def test_one_who_fails_after_writing_takes_back_only_their_own(
     a, b, c = people
     found = together(db, playing(a, "a"), breaking(b, "b"), playing(c, "c"))
     assert isinstance(found[1].error, ZeroDivisionError)
+    assert (found[0].get(), found[2].get()) == (True, True)
+    assert [keys(one) for one in people] == [{"a"}, set(), {"c"}]
+
+
+def test_what_the_database_refuses_takes_back_only_its_own(db: Database, people: list[Any]) -> None:
+    a, b, c = people
+
+    def twice() -> Errand[None]:
+        who = yield from locking_again(b.participant)
+        trial = yield from at_trial.reaching(who, 1, key="b")
+        for _ in range(2):
+            yield from at_trial.adding(who, trial, key="b", kind="played", payload={}, now=db.now())
+
+    found = together(db, playing(a, "a"), twice, playing(c, "c"))
+    assert re.search("(?i)unique", str(found[1].error))
     assert (found[0].get(), found[2].get()) == (True, True)
     assert [keys(one) for one in people] == [{"a"}, set(), {"c"}]
 
