@@ -86,7 +86,7 @@ def fit(
     another shape, or with a category that nobody used when there are no priors.
     """
     _check(model, counts, priors)
-    problem = _Problem(model, counts, priors, weights)
+    problem = Problem(model, counts, priors, weights)
     if near is not None and near.model.names == model.names:
         return _refit(problem, near)
     parameters = _start(model, counts) if start is None else start
@@ -99,7 +99,7 @@ def fit(
     return _on_fine_grid(problem, parameters, inverse)
 
 
-def _on_fine_grid(problem: _Problem, parameters: Floats, inverse: Floats | None) -> OrdinalFit:
+def _on_fine_grid(problem: Problem, parameters: Floats, inverse: Floats | None) -> OrdinalFit:
     """Climb to the optimum, and refine the grid until it no longer matters there."""
     model, counts = problem.model, problem.counts
     whole = first_grid(model, counts, parameters)
@@ -120,7 +120,7 @@ def _on_fine_grid(problem: _Problem, parameters: Floats, inverse: Floats | None)
     return problem.finish(grid, parameters, warnings)
 
 
-def _refit(problem: _Problem, near: OrdinalFit) -> OrdinalFit:
+def _refit(problem: Problem, near: OrdinalFit) -> OrdinalFit:
     """Step from an earlier fit to this one's optimum, on the earlier one's grid."""
     target = problem.target(near.grid)
     parameters = climb(target, near.parameters, inverse=near.covariance)[0]
@@ -128,7 +128,7 @@ def _refit(problem: _Problem, near: OrdinalFit) -> OrdinalFit:
 
 
 @dataclass(frozen=True)
-class _Problem:
+class Problem:
     """What is fitted to what."""
 
     model: OrdinalModel
