@@ -29,6 +29,7 @@ from analysis.decision.verdicts import Decision
 from analysis.estimates.joint import Joint, joint_of
 from analysis.estimates.linkage import Linkage, linkage_of
 from analysis.estimates.noticing import Noticing
+from analysis.estimates.person_effects import person_effects
 from analysis.estimates.preference import Preference, preference_of
 from analysis.estimates.realism import Realism
 from analysis.estimates.separation import separation_warnings
@@ -84,6 +85,8 @@ class Inference:
             made["pareto"] = pareto_table(self.pareto)
         if self.joint:
             made["joint-scale"] = self.joint.table(self.best)
+        if self.realism is not None:
+            made["person-effects"] = person_effects(self.realism)
         for name, model in (
             ("realism-model", self.realism),
             ("preference-model", self.preference),

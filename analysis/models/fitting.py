@@ -37,7 +37,7 @@ class OrdinalFit:
     """A fitted model. ``log_likelihood`` is without the priors; ``covariance`` is their sum's.
 
     ``warnings`` say in plain words what a reader must know: a grid at its limit, a direction in
-    which the data say nothing.
+    which the data say nothing; ``weights`` are those that people had.
     """
 
     model: OrdinalModel
@@ -48,6 +48,7 @@ class OrdinalFit:
     counts: Counts
     priors: Priors | None
     warnings: tuple[str, ...] = ()
+    weights: Floats | None = None
 
     def value(self, name: str) -> float:
         """Return one parameter; raises KeyError."""
@@ -173,6 +174,7 @@ class Problem:
             self.counts,
             self.priors,
             tuple(warnings),
+            self.weights,
         )
 
 

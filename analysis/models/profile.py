@@ -23,15 +23,15 @@ _CLOSE: Final = 1e-3  # of a standard error
 
 
 def profile_interval(
-    found: OrdinalFit, name: str, *, confidence: float = 0.95, weights: Floats | None = None
+    found: OrdinalFit, name: str, *, confidence: float = 0.95
 ) -> tuple[float, float]:
     """Return the interval of one parameter, infinite where the data set no bound.
 
-    ``weights`` (n_people,) are those of the fit. Raises KeyError for a name of no parameter.
+    Raises KeyError for a name of no parameter.
     """
     found.value(name)
     place = found.model.names.index(name)
-    problem = Problem(found.model, found.counts, found.priors, weights)
+    problem = Problem(found.model, found.counts, found.priors, found.weights)
     target = problem.target(found.grid)
     lowest = target(found.parameters)[0]
     allowed = float(chdtri(1, 1.0 - confidence)) / 2

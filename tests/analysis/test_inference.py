@@ -43,6 +43,7 @@ def test_near_a_cheap_eye_is_different_and_far_it_is_enough(tables: Tables) -> N
     assert set(found.tables()) == {
         "decision",
         "realism-model",
+        "person-effects",
         "preference-model",
         "noticing-model",
         "curves",
