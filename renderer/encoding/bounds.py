@@ -14,7 +14,7 @@ MAX_BYTES: Final = 8_000_000  # of a clip of 5 s with 1920 x 1080 pixels or fewe
 REFERENCE_S: Final = 5.0
 REFERENCE_PX: Final = 1920 * 1080
 MAX_FLIP_SHARE: Final = 0.1
-FULL: Final = 0.98  # aim a little below the bound: the file has a head, the buffer is no wall
+FULL: Final = 0.985  # aim a little below the bound: the file has a head, the buffer is no wall
 # A player has the whole clip before it starts, so what the sides of an orbit leave over may go to
 # its middle: x264's rate buffer holds a large part of a clip, which H.264's level 4 allows (31
 # Mbit). It begins nine tenths full, and x264 keeps it half full as long as it looks ahead. A clip
@@ -32,7 +32,8 @@ class Fineness:
     how many steps finer the lids' opening and the lids are (6 halve the error), and the matrices.
 
     H.264's own matrices (jvt) spare what FLIP sees least; where so fine a quantiser has no step
-    left to give, flat ones go further.
+    left to give, flat ones go further. More steps than the factor has are no waste: x264 is coarser
+    by several where there is much detail.
     """
 
     quality: float
@@ -42,10 +43,10 @@ class Fineness:
 
 
 FINENESS: Final = {
-    "macroscopic": Fineness(quality=26.0, eye_steps=21.0, lid_steps=0.0, matrices="jvt"),
+    "macroscopic": Fineness(quality=26.0, eye_steps=21.7, lid_steps=0.0, matrices="jvt"),
     "near": Fineness(quality=24.0, eye_steps=20.0, lid_steps=6.0),
-    "medium": Fineness(quality=24.0, eye_steps=24.0, lid_steps=8.0),
-    "far": Fineness(quality=24.0, eye_steps=24.0, lid_steps=8.0),
+    "medium": Fineness(quality=24.0, eye_steps=32.0, lid_steps=8.0),
+    "far": Fineness(quality=24.0, eye_steps=32.0, lid_steps=8.0),
 }
 
 
