@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -92,3 +92,9 @@ def write_beside(axes: Axes, y: float, text: str, *, colour: str = QUIET) -> Non
         fontsize=SMALL,
         color=colour,
     )
+
+
+def span_of(row: Mapping[str, Any], name: str) -> tuple[float, float, float]:
+    """Return a row's estimate with its interval, from columns like x, x_low and x_high."""
+    value, low, high = (row[f"{name}{end}"] for end in ("", "_low", "_high"))
+    return (value, low, high)

@@ -1,4 +1,4 @@
-"""The scales that the models find: latent realism, preference in JOD, detection in d'."""
+"""The scales that the models find: latent realism, and preference in JOD."""
 
 from __future__ import annotations
 
@@ -10,10 +10,8 @@ from matplotlib.figure import Figure
 
 from analysis.charts.material import Material
 from analysis.charts.parts import records
-from analysis.charts.rows import draw_span, row_chart, write_beside
+from analysis.charts.rows import draw_span, row_chart, span_of, write_beside
 from analysis.charts.style import (
-    ALARM,
-    INK,
     QUIET,
     SMALL,
     lod_colour,
@@ -23,17 +21,12 @@ from analysis.charts.style import (
 from analysis.descriptive import mean_ratings
 from analysis.estimates.preference import Preference
 from analysis.ordering import lod_order
-from analysis.wording import people, percent
+from analysis.wording import people
 
 LATENT: Final = "Realism by the ordinal mixed model"
 PREFERENCE: Final = "Preference scale per distance"
-DETECTION: Final = "How well differences are detected"
 NO_MODEL: Final = "It takes ratings of two people or more; there are not so many yet."
 NO_SCALE: Final = "Two people or more have to compare different LoDs; there are not so many yet."
-NO_CATCH: Final = (
-    "No pair of equal LoDs has been answered beside unequal ones yet. How often people notice what "
-    "is not there is therefore unknown, and with it d′."
-)
 
 
 def latent_table(material: Material) -> pd.DataFrame:
@@ -65,8 +58,8 @@ def latent_realism(material: Material) -> Figure:
         colour, marker = lod_colour(row["lod"], lods), lod_marker(row["lod"], lods)
         ends = (row["latent_low"], row["latent_high"]) if i else (np.nan, np.nan)
         draw_span(latent, y, (row["latent"], *ends), colour=colour, marker=marker)
-        draw_span(rating, y, _span(row, "rating"), colour=colour, marker=marker)
-        draw_span(rating, y + 0.27, _span(row, "mean"), colour=QUIET, marker=".", edge=QUIET)
+        draw_span(rating, y, span_of(row, "rating"), colour=colour, marker=marker)
+        draw_span(rating, y + 0.27, span_of(row, "mean"), colour=QUIET, marker=".", edge=QUIET)
         write_beside(rating, y, people(row["people"]))
     low, high = material.tables.scale
     first = f"{rows[0]['lod']} at {rows[0]['distance']} = 0"
@@ -119,7 +112,7 @@ def preference_scale(material: Material) -> Figure:
         draw_span(
             axes,
             y,
-            _span(row, "jod"),
+            span_of(row, "jod"),
             colour=lod_colour(row["lod"], lods),
             marker=lod_marker(row["lod"], lods),
             is_open=row["lod"] == row["reference"],
@@ -131,66 +124,6 @@ def preference_scale(material: Material) -> Figure:
         fontsize=SMALL,
     )
     return chart.figure
-
-
-def detection_table(material: Material) -> pd.DataFrame:
-    """Return d', the share of yes and its excess per pair, with the false alarms beside."""
-    noticing = material.inference.noticing
-    if noticing is None:
-        return pd.DataFrame(columns=["distance", "lesser", "greater", "d_prime"])
-    alarm, draws = noticing.false_alarms()
-    low, high = np.quantile(draws, (0.025, 0.975))
-    return noticing.table().assign(
-        false_alarms=alarm,
-        false_alarms_low=low,
-        false_alarms_high=high,
-        catch_answers=noticing.catch_answers,
-    )
-
-
-def detection(material: Material) -> Figure:
-    """Draw d' per pair, and the share of yes beside the false alarms."""
-    table = detection_table(material)
-    if table.empty:
-        return message_figure(DETECTION, NO_CATCH, is_simulated=material.is_simulated)
-    rows = records(table)
-    chart = row_chart(
-        DETECTION,
-        material.tables,
-        groups=[str(row["distance"]) for row in rows],
-        names=[f"{row['lesser']} – {row['greater']}" for row in rows],
-        widths=(1.0, 1.0),
-    )
-    sensitivity, yes = chart.panels
-    for y, row in zip(chart.places, rows, strict=True):
-        draw_span(sensitivity, y, _span(row, "d_prime"), colour="#1F3A5F")
-        draw_span(yes, y, _span(row, "yes"), colour="#1F3A5F")
-    first = rows[0]
-    sensitivity.axvline(0, color="#999999", linewidth=0.8, zorder=0)
-    yes.axvspan(first["false_alarms_low"], first["false_alarms_high"], color=ALARM, alpha=0.15,
-                linewidth=0, zorder=0)  # fmt: skip
-    yes.axvline(first["false_alarms"], color=ALARM, linewidth=1.2, zorder=1)
-    yes.annotate(
-        f"false alarms {percent(first['false_alarms'])}, {first['catch_answers']} answers",
-        (first["false_alarms"], 1),
-        xycoords=("data", "axes fraction"),
-        xytext=(-2, 0),
-        textcoords="offset points",
-        ha="left",
-        va="bottom",
-        fontsize=SMALL,
-        color=INK,
-    )
-    sensitivity.set_xlabel("sensitivity d′, sd of the percept", fontsize=SMALL)
-    yes.set_xlabel("share of people who say yes", fontsize=SMALL)
-    yes.set_xlim(0, 1)
-    yes.xaxis.set_major_formatter(lambda value, _: f"{100 * value:.0f} %")
-    return chart.figure
-
-
-def _span(row: dict[str, Any], name: str) -> tuple[float, float, float]:
-    value, low, high = (row[f"{name}{end}"] for end in ("", "_low", "_high"))
-    return (value, low, high)
 
 
 def _step(preference: Preference, place: int) -> tuple[float, float]:

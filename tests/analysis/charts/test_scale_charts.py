@@ -9,10 +9,11 @@ from matplotlib.figure import Figure
 from analysis.charts import CHARTS
 from analysis.charts.course import course_table
 from analysis.charts.curves import curves_table
+from analysis.charts.detection import detection_table
 from analysis.charts.heat import heat_table
 from analysis.charts.material import Material
 from analysis.charts.people import observers_table
-from analysis.charts.scales import detection_table, latent_table, preference_table
+from analysis.charts.scales import latent_table, preference_table
 from analysis.charts.spread import spread_table
 from analysis.charts.style import PAGE_WIDTH_IN, SIMULATED
 from analysis.curves.curve import NOTICED
