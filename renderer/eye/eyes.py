@@ -7,7 +7,7 @@ only for the LoDs that a frame asks for.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
 from typing import Any
 
@@ -125,22 +125,38 @@ class Eyes:
         target, wireframe = self._gl.fbo, self._gl.wireframe
         self._gl.wireframe = False
         for model in models:
-            self._set(
-                model,
-                {"u_view_matrix": view_matrix, "u_projection": projection},
-                camera_mm,
-                eye=eye,
-                lines=target.viewport[3],
-            )
             placed = np.asarray(view_matrix) @ model.values["u_eye_to_world"]
             model.shaded.begin(
                 self._gl, target.viewport, eye_to_clip=np.asarray(projection) @ placed
             )
-            model.mesh.render()
+            with self._only_seen(model, target, view_matrix=view_matrix, projection=projection):
+                # Its textures come after those that tell what is seen.
+                self._set(
+                    model,
+                    {"u_view_matrix": view_matrix, "u_projection": projection},
+                    camera_mm,
+                    eye=eye,
+                    lines=target.viewport[3],
+                )
+                model.mesh.render()
             model.shaded.camera = camera_mm
         self._gl.wireframe = wireframe
         self._gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         target.use()
+
+    def _only_seen(
+        self, model: EyeModel, target: moderngl.Framebuffer, *, view_matrix: Any, projection: Any
+    ) -> AbstractContextManager[None]:
+        """Leave out what ``target`` hides already; ``begin`` came before."""
+        depth, silhouette = target.depth_attachment, model.silhouette
+        if silhouette is None or not isinstance(depth, moderngl.Texture) or depth.samples:
+            return nullcontext()
+        placed = {
+            "u_view_matrix": view_matrix,
+            "u_projection": projection,
+            "u_eye_to_world": model.values["u_eye_to_world"],
+        }
+        return model.shaded.only_seen(self._gl, lambda: silhouette.draw_seen(placed, depth))
 
     def is_active(self, eye: int, uniform: str) -> bool:
         """Whether the eye's program still reads a uniform: off levels leave none behind."""

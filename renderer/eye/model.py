@@ -142,7 +142,7 @@ def build_model(
             mean_albedo=np.asarray(values["u_iris_mean"]),
             albedo=albedo,
         )
-    shaded = Shaded(rims, has_depth=not is_fine)
+    shaded = Shaded(rims)
     silhouette = Silhouette(gl, detail_mesh(detail)) if is_fine else None
     return EyeModel(
         detail, program, mesh, values, shaded, Outline(gl, detail_mesh(detail)), silhouette

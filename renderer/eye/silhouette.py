@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, Final
 
 import moderngl
@@ -23,39 +25,47 @@ HULL_SCALE: Final = 1.08  # a coarse globe of this size encloses every finer one
 
 
 class Shaded:
-    """One eye's radiance in a picture of its own: a pixel per pixel of the view that asks for it.
+    """One eye's radiance in a picture of its own, pixel for pixel where a view has it."""
 
-    ``has_depth`` is for meshes that are shaded as they stand and may hide parts of themselves.
-    """
-
-    def __init__(self, rims: LidRims, *, has_depth: bool) -> None:
+    def __init__(self, rims: LidRims) -> None:
         self.camera: Any = None  # whose picture it is
-        self._has_depth = has_depth
         self._target: moderngl.Framebuffer | None = None
         self._texture: moderngl.Texture | None = None
-        self._origin_px = (0, 0)
         self._opening = opening_points(rims)
 
     def begin(
         self, gl: moderngl.Context, viewport: tuple[int, int, int, int], *, eye_to_clip: Array
     ) -> None:
-        """Make a cleared target of the viewport's size the one that is drawn to.
+        """Make a cleared target that has the viewport the one that is drawn to.
 
         Drawing is confined to the lids' opening, which ``eye_to_clip`` (4, 4) projects.
         """
-        size = viewport[2:]
-        self._origin_px = viewport[:2]
+        # The same pixels as in the view, not only as many: the same rounding of corners.
+        size = (viewport[0] + viewport[2], viewport[1] + viewport[3])
         if self._target is None or self._target.size != size:
             self._texture = gl.texture(size, 4, dtype="f2")
             self._texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
-            depth = gl.depth_renderbuffer(size) if self._has_depth else None
-            self._target = gl.framebuffer([self._texture], depth)
+            self._target = gl.framebuffer([self._texture], gl.depth_renderbuffer(size))
         self._target.use()
-        self._target.scissor = (0, 0, *size)
+        self._target.viewport = viewport
+        self._target.scissor = viewport
         self._target.clear()
-        self._target.scissor = opening_box(self._opening, eye_to_clip, size)
-        tested = moderngl.DEPTH_TEST if self._has_depth else moderngl.NOTHING
-        gl.enable_only(moderngl.CULL_FACE | tested)
+        self._target.scissor = self.box(viewport, eye_to_clip)
+        gl.enable_only(moderngl.CULL_FACE | moderngl.DEPTH_TEST)
+
+    @contextmanager
+    def only_seen(self, gl: moderngl.Context, mark: Callable[[], None]) -> Iterator[None]:
+        """Confine drawing to pixels that ``mark`` gives a depth of 1; ``begin`` came before."""
+        assert self._target is not None
+        self._target.clear(depth=0.0, viewport=self._target.scissor)
+        gl.depth_func = "1"
+        mark()
+        gl.depth_func = "<"
+        self._target.depth_mask = False
+        try:
+            yield
+        finally:
+            self._target.depth_mask = True
 
     def box(self, viewport: Box, eye_to_clip: Array) -> Box:
         """Return the scissor box in the target of what the lids leave open in a viewport."""
@@ -63,8 +73,8 @@ class Shaded:
         return viewport[0] + x, viewport[1] + y, width, height
 
     def uniforms(self, name: str) -> dict[str, Any]:
-        """Return the picture as the sampler ``name`` and where it lies in the target."""
-        return {name: self._texture, "u_view_origin_px": self._origin_px}
+        """Return the picture as the sampler ``name``."""
+        return {name: self._texture}
 
 
 class Outline:
@@ -86,6 +96,13 @@ class Silhouette:
     def __init__(self, gl: moderngl.Context, mesh: Mesh) -> None:
         self._program = build_program(gl, "eye.vert", fragment="eye_silhouette.frag")
         self._mesh = vertex_array(gl, self._program, mesh)
+        self._seen = build_program(gl, "eye.vert", fragment="eye_seen.frag")
+        self._seen_mesh = vertex_array(gl, self._seen, mesh)
+
+    def draw_seen(self, values: dict[str, Any], depth: moderngl.Texture) -> None:
+        """Mark where the mesh is not behind ``depth``, for ``Shaded.only_seen``."""
+        self._seen.set(**values, u_depth=depth)
+        self._seen_mesh.render()
 
     def draw(self, values: dict[str, Any], shaded: Shaded) -> None:
         """Draw the fine mesh into the current target."""

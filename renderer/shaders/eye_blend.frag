@@ -1,9 +1,8 @@
 // Provides: an eye between two LoDs, from the pictures that eye.frag has left of both. Their alpha
 // says where their meshes lie: by the silhouette one may have a pixel that the other has not.
 
-uniform sampler2D u_coarse;        // radiance per pixel of the view
+uniform sampler2D u_coarse;        // radiance per pixel
 uniform sampler2D u_fine;
-uniform ivec2 u_view_origin_px;    // lower left of the view in the target
 uniform float u_share;             // of the finer LoD
 
 out vec4 f_radiance;
@@ -25,7 +24,7 @@ vec4 around(sampler2D picture, ivec2 at) {
 }
 
 void main() {
-    ivec2 at = ivec2(gl_FragCoord.xy) - u_view_origin_px;
+    ivec2 at = ivec2(gl_FragCoord.xy);
     vec4 sum = (1.0 - u_share) * around(u_coarse, at) + u_share * around(u_fine, at);
     f_radiance = vec4(sum.rgb / max(sum.a, 1e-6), 2.0);
 }

@@ -2,11 +2,10 @@
 // picture that eye.frag has left. Small triangles cost four times their pixels in software GL, so
 // the expensive shader never sees them.
 
-uniform sampler2D u_shaded;        // radiance per pixel of the view
-uniform ivec2 u_view_origin_px;    // lower left of the view in the target
+uniform sampler2D u_shaded;        // radiance per pixel
 
 out vec4 f_radiance;
 
 void main() {
-    f_radiance = vec4(texelFetch(u_shaded, ivec2(gl_FragCoord.xy) - u_view_origin_px, 0).rgb, 2.0);
+    f_radiance = vec4(texelFetch(u_shaded, ivec2(gl_FragCoord.xy), 0).rgb, 2.0);
 }
