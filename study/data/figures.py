@@ -15,7 +15,7 @@ from sqlalchemy import delete, select, text
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
-from study.data.figures_due import KINDS, find_set, is_claimed, is_due, newest, shown_studies
+from study.data.figures_due import KINDS, is_due, newest, shown_studies
 from study.data.schema import FigureFileRow, FigureSetRow
 
 LEASE: Final = timedelta(seconds=90)
@@ -31,23 +31,6 @@ class Claim:
     kind: str
     seen: str
     as_of: datetime
-
-
-@dataclass(frozen=True)
-class FigureSet:
-    """What there is of one kind of answers, and what is being done about it.
-
-    ``summary`` is None while nothing has been drawn; ``is_stale`` says that answers have come since
-    (or that none of those that came has been drawn); ``error`` is why the last drawing failed.
-    """
-
-    id: int | None
-    summary: Mapping[str, Any] | None
-    as_of: datetime | None
-    is_being_made: bool
-    is_stale: bool
-    error: str | None
-    failed_at: datetime | None
 
 
 def due(db: Database) -> list[tuple[int, str]]:
@@ -156,31 +139,6 @@ def free_dead(db: Database, is_dead: Callable[[str], bool]) -> int:
         for row in rows:
             _free(row)
         return len(rows)
-
-
-def latest(db: Database, study_id: int, kind: str) -> FigureSet:
-    """Return what there is of one kind of a study's answers now."""
-    with db.reading() as session:
-        row = find_set(session, study_id, kind)
-        answers = newest(session, study_id, kind)
-        if row is None:
-            return FigureSet(None, None, None, False, bool(answers), None, None)
-        return FigureSet(
-            id=row.id,
-            summary=row.summary,
-            as_of=row.as_of,
-            is_being_made=is_claimed(row, db.now()),
-            is_stale=bool(answers) and answers != row.seen,
-            error=row.error,
-            failed_at=row.failed_at,
-        )
-
-
-def content(db: Database, set_id: int, name: str) -> bytes | None:
-    """Return one file of a set, None where it has none of that name."""
-    with db.reading() as session:
-        row = session.get(FigureFileRow, (set_id, name))
-        return None if row is None else zlib.decompress(row.content)
 
 
 def forget(session: Session, study_id: int) -> None:

@@ -12,7 +12,7 @@ from typing import Final
 from fastapi import APIRouter, HTTPException
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import figures, researchers
+from study.data import figures_shown, researchers
 from study.data.figures_due import KINDS
 from study.data.researchers import RESULTS_HIDDEN, RESULTS_SHOWN
 from study.data.studies import Study
@@ -47,7 +47,7 @@ def results(here: Here, researcher: ResearcherHere, data: str = KINDS[0]) -> Res
     if not _sees(here, researcher, study):
         return here.page("researcher/results_hidden.html", **common, fault="")
     kind = data if data in KINDS else KINDS[0]
-    found = figures.latest(here.db, study.id, kind)
+    found = figures_shown.latest(here.db, study.id, kind)
     return here.page("researcher/results.html", **common, kind=kind, found=found)
 
 
@@ -81,8 +81,8 @@ def file(here: Here, researcher: ResearcherHere, kind: str, name: str) -> Respon
     ending = name.rpartition(".")[2]
     if kind not in KINDS or ending not in TYPES:
         raise HTTPException(404)
-    found = figures.latest(here.db, study.id, kind)
-    content = None if found.id is None else figures.content(here.db, found.id, name)
+    found = figures_shown.latest(here.db, study.id, kind)
+    content = None if found.id is None else figures_shown.content(here.db, found.id, name)
     if content is None:
         raise HTTPException(404)
     media_type, disposition = TYPES[ending]

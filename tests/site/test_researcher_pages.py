@@ -16,7 +16,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from study.data import figures, jobs, researchers
+from study.data import figures, figures_shown, jobs, researchers
 from study.data.schema import FigureSetRow
 from study.figures import draw_claimed
 from study.simulate import simulate
@@ -209,7 +209,7 @@ def test_the_figures_are_the_reports_own_and_stamped(site: Any, ada: Any) -> Non
     assert "The figures are being drawn for the first time." in page
     draw_claimed(site.db, worker="worker")
     page = ada.get("/researcher/results?data=simulated").text
-    found = figures.latest(site.db, site.study.id, "simulated")
+    found = figures_shown.latest(site.db, site.study.id, "simulated")
     assert f"As of {found.as_of:%Y-%m-%d %H:%M:%S} UTC" in page
     assert "No answer has come since." in page
     names = re.findall(r'<figure id="([a-z-]+)">', page)

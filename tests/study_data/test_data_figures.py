@@ -13,7 +13,7 @@ import pytest
 
 from study.commands.processes import ending
 from study.commands.starting import start_drawing
-from study.data import erasure, export, figures, participants, researchers
+from study.data import erasure, export, figures, figures_shown, participants, researchers
 from study.data.database import Database
 from study.data.figures import Claim
 from study.data.researchers import Researcher
@@ -64,10 +64,10 @@ def test_figures_are_drawn_once_a_minute_and_only_of_new_answers(
 ) -> None:
     answer(db, study)
     draw(db)
-    found = figures.latest(db, study.id, "simulated")
+    found = figures_shown.latest(db, study.id, "simulated")
     assert (found.summary, found.as_of, found.is_stale) == (SUMMARY, clock.now, False)
     answer(db, study, seed=2)
-    assert figures.latest(db, study.id, "simulated").is_stale
+    assert figures_shown.latest(db, study.id, "simulated").is_stale
     clock.move(seconds=59)
     assert figures.due(db) == []
     clock.move(seconds=1)
@@ -98,8 +98,8 @@ def test_of_several_workers_one_draws(db: Database, study: Study) -> None:
     with ThreadPoolExecutor(4) as pool:
         found = list(pool.map(lambda n: figures.claim(db, worker=f"w{n}"), range(4)))
     assert sum(own is not None for own in found) == 1
-    assert figures.latest(db, study.id, "simulated").is_being_made
-    assert figures.latest(db, study.id, "people").is_being_made is False
+    assert figures_shown.latest(db, study.id, "simulated").is_being_made
+    assert figures_shown.latest(db, study.id, "people").is_being_made is False
 
 
 @pytest.mark.usefixtures("ada")
@@ -116,7 +116,7 @@ def test_a_claim_whose_holder_is_silent_passes_on_and_the_late_one_stores_nothin
     draw(db, "next", **{"a.svg": b"next"})
     assert not figures.renew(db, late, worker="late")
     assert not figures.store(db, late, worker="late", summary={}, files={"a.svg": b"late"})
-    assert figures.content(db, late.id, "a.svg") == b"next"
+    assert figures_shown.content(db, late.id, "a.svg") == b"next"
 
 
 @pytest.mark.usefixtures("ada")
@@ -137,19 +137,19 @@ def test_a_failure_is_told_beside_the_older_figures_and_tried_again_later(
     answer(db, study, seed=2)
     clock.move(minutes=1)
     figures.fail(db, claim(db), worker="w", error="no room on the disk")
-    found = figures.latest(db, study.id, "simulated")
+    found = figures_shown.latest(db, study.id, "simulated")
     assert (found.error, found.failed_at, found.summary) == (
         "no room on the disk",
         clock.now,
         SUMMARY,
     )
     assert found.id is not None
-    assert figures.content(db, found.id, "a.svg") == b"old"
+    assert figures_shown.content(db, found.id, "a.svg") == b"old"
     clock.move(seconds=299)
     assert figures.due(db) == []
     clock.move(seconds=1)
     draw(db)
-    assert figures.latest(db, study.id, "simulated").error is None
+    assert figures_shown.latest(db, study.id, "simulated").error is None
 
 
 @pytest.mark.usefixtures("ada")
@@ -159,10 +159,10 @@ def test_files_of_the_set_before_are_gone(db: Database, study: Study, clock: Any
     answer(db, study, seed=2)
     clock.move(minutes=1)
     draw(db, **{"a.svg": b"<svg> new"})
-    found = figures.latest(db, study.id, "simulated")
+    found = figures_shown.latest(db, study.id, "simulated")
     assert found.id is not None
-    assert figures.content(db, found.id, "a.svg") == b"<svg> new"
-    assert figures.content(db, found.id, "b.csv") is None
+    assert figures_shown.content(db, found.id, "a.svg") == b"<svg> new"
+    assert figures_shown.content(db, found.id, "b.csv") is None
 
 
 @pytest.mark.usefixtures("ada")
@@ -175,13 +175,13 @@ def test_whoever_withdraws_is_in_no_figure_any_more(db: Database, study: Study, 
     assert first is not None
     assert second is not None
     erasure.withdraw(db, first)
-    found = figures.latest(db, study.id, "simulated")
+    found = figures_shown.latest(db, study.id, "simulated")
     assert (found.id, found.summary, found.is_stale) == (None, None, True)
     being_drawn = claim(db)
     erasure.withdraw(db, second)
     assert not figures.store(db, being_drawn, worker="w", summary=SUMMARY, files={})
     clock.move(hours=1)
-    assert figures.latest(db, study.id, "simulated").is_stale is False  # nobody is left
+    assert figures_shown.latest(db, study.id, "simulated").is_stale is False  # nobody is left
 
 
 class Drawing:
@@ -218,10 +218,10 @@ def test_the_keeper_starts_one_drawing_and_tells_how_it_ended(db: Database, stud
     keeper.tick()
     keeper.tick()
     assert len(started) == 1
-    assert figures.latest(db, study.id, "simulated").is_being_made
+    assert figures_shown.latest(db, study.id, "simulated").is_being_made
     started[0].status = -signal.SIGKILL
     keeper.tick()
-    found = figures.latest(db, study.id, "simulated")
+    found = figures_shown.latest(db, study.id, "simulated")
     assert found.error == "the process that draws ended (SIGKILL)"
     assert not found.is_being_made
     assert said == [
@@ -240,7 +240,7 @@ def test_the_keeper_ends_a_drawing_that_takes_for_ever_and_gives_back_when_stopp
     keeper.tick()
     passed[0] = LONGEST_S
     keeper.tick()
-    error = figures.latest(db, study.id, "simulated").error
+    error = figures_shown.latest(db, study.id, "simulated").error
     assert error == "drawing took longer than 30 minutes and was ended"
     clock.move(minutes=5)
     again = FigureKeeper(db, lambda _name: Drawing())
@@ -248,7 +248,7 @@ def test_the_keeper_ends_a_drawing_that_takes_for_ever_and_gives_back_when_stopp
     stop = threading.Event()
     stop.set()
     keep_figures(again, stop, poll_s=0.0)
-    found = figures.latest(db, study.id, "simulated")
+    found = figures_shown.latest(db, study.id, "simulated")
     assert not found.is_being_made
     assert figures.due(db)
 
@@ -270,7 +270,7 @@ def test_a_killed_drawing_is_told(
     processes[0].kill()
     processes[0].wait()
     keeper.tick()
-    error = figures.latest(db, study.id, "simulated").error
+    error = figures_shown.latest(db, study.id, "simulated").error
     assert error == "the process that draws ended (SIGKILL)"
 
 
