@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import kendalltau
 
 from analysis.agreement import intraclass
 from analysis.ordinal_alpha import krippendorff
 from analysis.reading import Tables, tables_from
-from analysis.reliability import person_taus, reliability
+from analysis.reliability import person_taus, reliability, tau_b
 
 # Shrout and Fleiss 1979, table 2: six targets, four judges.
 JUDGES = [[9, 2, 5, 8], [6, 1, 3, 2], [8, 4, 6, 8], [7, 1, 2, 6], [10, 5, 6, 9], [6, 2, 4, 7]]
@@ -118,3 +119,9 @@ def test_where_nothing_can_be_told_every_value_is_empty(given: list[tuple[str, s
     frame = pd.DataFrame(given, columns=["participant", "lod", "rating"])
     ratings = tables_from({"ratings": frame}).ratings
     assert reliability(ratings, np.random.default_rng(1))["value"].isna().all()
+
+
+def test_tau_b_is_that_of_scipy(rng: np.random.Generator) -> None:
+    x, y = rng.integers(1, 6, 40).astype(float), rng.integers(1, 6, 40).astype(float)
+    assert tau_b(x, y) == pytest.approx(float(kendalltau(x, y).statistic))
+    assert np.isnan(tau_b(x, np.ones(40)))
