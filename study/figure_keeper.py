@@ -103,6 +103,9 @@ def keep_figures(keeper: FigureKeeper, stop: threading.Event, *, poll_s: float =
     """Look now and then until told to stop; for a thread beside the worker's."""
     try:
         while not stop.wait(poll_s):
-            keeper.tick()
+            try:
+                keeper.tick()
+            except Exception as error:  # a database that is away for a while ends no figures
+                keeper.say(f"Figures of the dashboard: {error}; looking again.")
     finally:
         keeper.stop()

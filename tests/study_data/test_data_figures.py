@@ -288,3 +288,26 @@ def test_a_lease_outlives_the_pauses_between_its_renewals() -> None:
     from study.figures import BEAT_S
 
     assert timedelta(seconds=2 * BEAT_S) < figures.LEASE
+
+
+def test_a_database_that_is_away_for_a_moment_ends_no_figures() -> None:
+    said: list[str] = []
+    stop = threading.Event()
+
+    class Away:
+        say = staticmethod(said.append)
+        looks = 0
+
+        def tick(self) -> None:
+            self.looks += 1
+            if self.looks == 2:
+                stop.set()
+            raise OSError("the server is gone")
+
+        def stop(self) -> None:
+            said.append("stopped")
+
+    away: Any = Away()
+    keep_figures(away, stop, poll_s=0.0)
+    gone = "Figures of the dashboard: the server is gone; looking again."
+    assert said == [gone, gone, "stopped"]
