@@ -21,6 +21,8 @@ from renderer.spherical_harmonics import sh_basis
 RADIUS_MM: Final = 12.6  # a little more than the globe's
 NASAL_MM: Final = 26.0  # towards the nose, which hides it: one looks far in from the temple
 DEPTH_MM: Final = -0.5  # behind the globe's centre
+WALL_MM: Final = 3.0  # towards the temple the fold comes so far before the globe's centre
+WALL_RADIUS_MM: Final = 12.35  # under the lids there
 SIDES: Final = 48
 TISSUE: Final = (0.52, 0.33, 0.28)  # reflectance of conjunctiva
 REACHED: Final = 0.65  # share of the light from in front that comes so far
@@ -28,12 +30,14 @@ COSINE_LOBE: Final = np.array([1.0] + 3 * [2 / 3] + 5 * [1 / 4])  # Ramamoorthi,
 
 
 class Fornix:
-    """Both eyes' folds, each a flat patch that faces forwards."""
+    """Both eyes' folds, each a flat patch that faces forwards and a wall on the temple's side."""
 
     def __init__(self, gl: moderngl.Context, depth: Program) -> None:
         """``depth`` is the program that draws bare triangles."""
         self._program = build_program(gl, "depth.vert", fragment="fornix.frag")
-        corners = np.concatenate([disc(eye) for eye in (0, 1)]).astype(np.float32)
+        corners = np.concatenate([part(eye) for eye in (0, 1) for part in (disc, wall)]).astype(
+            np.float32
+        )
         content = [(gl.buffer(corners.tobytes()), "3f", "in_position")]
         self._discs = gl.vertex_array(self._program.gl_program, content)
         self._bare = gl.vertex_array(depth.gl_program, content)
@@ -63,3 +67,21 @@ def disc(eye: int) -> Floats:
     rim[is_nasal, 0] *= NASAL_MM / RADIUS_MM
     corners = np.stack([np.zeros((SIDES, 3)), rim[:-1], rim[1:]], axis=1).reshape(-1, 3)
     return np.asarray(corners + eye_centre_mm(eye) + [0.0, 0.0, DEPTH_MM])
+
+
+def wall(eye: int) -> Floats:
+    """Return a zone of a sphere, seen from inside, on the temple's side: corners (3 n, 3).
+
+    From the nose one looks past the globe and beside the disc.
+    """
+    outer = np.pi if eye == 0 else 0.0
+    turn, z = np.meshgrid(
+        outer + np.linspace(-np.pi / 2, np.pi / 2, SIDES // 2 + 1),
+        np.linspace(DEPTH_MM, WALL_MM, 5),
+        indexing="ij",
+    )
+    radius = np.sqrt(WALL_RADIUS_MM**2 - z**2)
+    grid = np.stack([radius * np.cos(turn), radius * np.sin(turn), z], axis=-1)
+    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
+    corners = np.stack([a, c, b, a, d, c], axis=2).reshape(-1, 3)
+    return np.asarray(corners + eye_centre_mm(eye))
