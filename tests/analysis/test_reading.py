@@ -84,8 +84,8 @@ def test_a_file_that_is_no_text_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "ratings.csv"
     path.write_bytes(b"participant,lod,rating\n\xff\xfe")
     assert faults_of(path) == (
-        "ratings.csv: row 2: byte 0xff is not UTF-8; accepted: CSV text in UTF-8, or in UTF-16 with "
-        'a byte order mark (in a spreadsheet, save as "CSV UTF-8")',
+        "ratings.csv: row 2: byte 0xff is not UTF-8; accepted: CSV text in UTF-8, or in UTF-16 "
+        'with a byte order mark (in a spreadsheet, save as "CSV UTF-8")',
     )
 
 
