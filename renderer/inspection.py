@@ -48,9 +48,8 @@ class Shot:
     """A frame and what it took.
 
     ``pixels`` (height, width, 3) uint8 sRGB; ``frame_ms`` until the finished frame was there, on a
-    GPU its own clock; ``triangles`` of everything drawn, all passes, outlines too; ``iris_px`` and ``visible_px``
-    per eye, left and right; ``lods`` what each
-    eye is drawn with.
+    GPU its own clock; ``triangles`` of everything drawn, all passes, outlines too; ``iris_px`` and
+    ``visible_px`` per eye, left and right; ``lods`` what each eye is drawn with.
     """
 
     pixels: Pixels
