@@ -116,7 +116,8 @@ class Head:
         program = self._programs["depth"]
         program.set(u_world_to_clip=clip)
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        for mesh in self._skin(float(np.linalg.norm(camera))):
+        # Conjunctiva goes on where its solid part ends, so there is no edge.
+        for mesh in [*self._skin(float(np.linalg.norm(camera))), *self._veils]:
             mesh.draw(program, clip, camera_mm=camera)
         self._fornix.draw_depth()
         marking = self._programs["mark"]

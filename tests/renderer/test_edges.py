@@ -10,9 +10,13 @@ import numpy.typing as npt
 import pytest
 
 from renderer.camera import View, look_at, perspective
-from renderer.edges import depth_step
+from renderer.clip import ClipSpec
+from renderer.detail import Detail
+from renderer.edges import Edges, depth_step
+from renderer.frame import FrameRenderer
 from renderer.outlines import EYE
 from renderer.picture import EXPOSURE, Picture
+from renderer.scene import Scene
 
 SIZE: Final = 64
 CAMERA_MM: Final = np.array([0.0, 0.0, 1000.0])
@@ -134,3 +138,17 @@ def test_a_step_of_depth_is_a_pixels_width() -> None:
 
     step = depth(-pixel_mm / 2) - depth(pixel_mm / 2)
     assert step == pytest.approx(scale * (far - depth(0.0)), rel=0.01)
+
+
+def test_conjunctiva_has_no_edge_where_its_solid_part_ends(
+    gl: moderngl.Context, standard_scene: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    low = Detail.uniform("low")
+    spec = ClipSpec(left=low, right=low, width=960, height=540, crowd=0)
+    renderer = FrameRenderer(gl, spec, scene=standard_scene)
+    smooth = renderer.render(20).pixels.astype(int)
+    monkeypatch.setattr(Edges, "smooth", lambda *_args, **_named: None)
+    rough = renderer.render(20).pixels.astype(int)
+    between_globe_and_caruncle = (slice(265, 310), slice(545, 565))
+    changed = np.abs(smooth - rough)[between_globe_and_caruncle]
+    assert changed.max() < 8
