@@ -119,7 +119,7 @@ def _rows(text: str, separator: str, name: str, faults: list[str]) -> list[list[
 
 def _header(names: list[str], known: Collection[str], name: str, notes: list[str]) -> list[str]:
     """Return the columns' names; those that differ from a known one in spelling alone get its."""
-    header = []
+    header: list[str] = []
     for own in names:
         plain = _plain(own)
         is_meant = own not in known and plain in known and plain not in (*names, *header)

@@ -223,4 +223,6 @@ def test_the_parser_knows_the_commands_of_the_design() -> None:
 def test_a_margin_that_cannot_be_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["analyse", "ratings.csv", "--noticed-margin", "1.5"]) == 1
     message = capsys.readouterr().err.strip()
-    assert message == "ocularist analyse: noticed_share: 1.5 is not between 0 and 1"
+    assert message == (
+        "ocularist analyse: noticed_margin: found 1.5; accepted: above 0 and below 1"
+    )

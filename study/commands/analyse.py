@@ -68,15 +68,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Analyse, say the answer, name the report."""
-    from analysis import analyse, read_source
+    from analysis import Margins, analyse, read_source
 
+    asked = {
+        "realism_points": options.realism_margin,
+        "noticed_share": options.noticed_margin,
+        "confidence": options.confidence,
+    }
+    Margins().changed(**asked)  # refuses what cannot be before anything is read
     source = options.source
     tables = _from_database(source) if "://" in source else read_source(source)
-    margins = tables.margins.changed(
-        realism_points=options.realism_margin,
-        noticed_share=options.noticed_margin,
-        confidence=options.confidence,
-    )
+    margins = tables.margins.changed(**asked)
     summary = analyse(
         tables,
         options.out,
