@@ -12,30 +12,30 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from analysis.audit import Audit, ShownClip, audit_design
     from analysis.charts import CHARTS, Chart, figure_bytes, figures
-    from analysis.column import Column
     from analysis.decision.margins import Margins, declared_margins
-    from analysis.observers import Answer, Observer, Stimulus, draw_observer
-    from analysis.parsing import TableError
-    from analysis.publish import Summary, analyse
-    from analysis.reading import Tables, read_source, tables_from
-    from analysis.table import (
+    from analysis.report.publish import Summary, analyse
+    from analysis.simulation.observers import Answer, Observer, Stimulus, draw_observer
+    from analysis.tables.column import Column
+    from analysis.tables.columns import (
         COLUMNS,
         accepted_in,
         codebook,
         column_names,
         columns_of,
     )
+    from analysis.tables.parsing import TableError
+    from analysis.tables.reading import Tables, read_source, tables_from
 
 _HOMES = {
     "audit": ("Audit", "ShownClip", "audit_design"),
     "charts": ("CHARTS", "Chart", "figure_bytes", "figures"),
-    "column": ("Column",),
+    "tables.column": ("Column",),
     "decision.margins": ("Margins", "declared_margins"),
-    "observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
-    "parsing": ("TableError",),
-    "publish": ("Summary", "analyse"),
-    "reading": ("Tables", "read_source", "tables_from"),
-    "table": ("COLUMNS", "accepted_in", "codebook", "column_names", "columns_of"),
+    "simulation.observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
+    "tables.parsing": ("TableError",),
+    "report.publish": ("Summary", "analyse"),
+    "tables.reading": ("Tables", "read_source", "tables_from"),
+    "tables.columns": ("COLUMNS", "accepted_in", "codebook", "column_names", "columns_of"),
 }
 
 __all__ = [

@@ -14,8 +14,8 @@ from typing import Final
 import pandas as pd
 
 from analysis.coverage import Coverage, coverage_of, linked_groups
-from analysis.ordering import natural
-from analysis.table import DISTANCES, STANDARD_LODS
+from analysis.tables.columns import DISTANCES, STANDARD_LODS
+from analysis.tables.ordering import natural
 from analysis.wording import listed
 
 MOST_LISTED: Final = 6  # more names than these are a number

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import ndtri, stdtrit
 
 from analysis.descriptive import CONFIDENCE, answered, t_interval
-from analysis.ordering import distance_order
+from analysis.tables.ordering import distance_order
 
 Floats = NDArray[np.float64]
 ALL_DISTANCES: Final = "all"

@@ -12,8 +12,8 @@ from analysis.decision.verdicts import Decision, decide
 from analysis.descriptive import answered
 from analysis.estimates.noticing import Noticing, noticing_of
 from analysis.estimates.realism import Realism, realism_of
-from analysis.ordering import lod_ranks
-from analysis.reading import Tables
+from analysis.tables.ordering import lod_ranks
+from analysis.tables.reading import Tables
 
 SEED: Final = 20120831  # of the draws; the same tables give the same report
 

@@ -15,7 +15,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 from scipy.special import stdtrit
 
-from analysis.ordering import in_order
+from analysis.tables.ordering import in_order
 
 CONFIDENCE: Final = 0.95
 

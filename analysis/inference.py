@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
 from analysis.curves.along_sizes import NO_CURVES, Curves, curves_of
 from analysis.curves.curve import curve_table, point_table, threshold_table
 from analysis.deciding import (
@@ -33,8 +33,8 @@ from analysis.estimates.person_effects import person_effects
 from analysis.estimates.preference import Preference, preference_of
 from analysis.estimates.realism import Realism
 from analysis.estimates.separation import separation_warnings
-from analysis.ordering import lod_ranks
-from analysis.reading import Tables
+from analysis.tables.ordering import lod_ranks
+from analysis.tables.reading import Tables
 
 __all__ = ["SEED", "Inference", "infer"]
 

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from analysis.reading import Tables
+from analysis.tables.reading import Tables
 from analysis.wording import percent
 
 _QUESTIONS: Final = (

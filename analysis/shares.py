@@ -15,8 +15,8 @@ import pandas as pd
 from scipy.special import ndtri
 
 from analysis.descriptive import CONFIDENCE
-from analysis.ordering import in_order
-from analysis.table import NOTICED, STANDARD_LODS
+from analysis.tables.columns import NOTICED, STANDARD_LODS
+from analysis.tables.ordering import in_order
 
 MOST_CLIPS: Final = 24
 """More clips than these are told by pairing: what a page can show, and a reader take in."""

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from analysis.observers import Answer, Observer, Stimulus
+from analysis.simulation.observers import Answer, Observer, Stimulus
 from study.design.attention import Attention
 from study.design.definition import StudyDefinition
 from study.design.parts import read_size

@@ -1,6 +1,7 @@
 """Simulated participants in bulk: they go through a study on the same functions as real ones.
 
-Their answers come from ``analysis.observers`` and are marked as simulated wherever they appear.
+Their answers come from ``analysis.simulation.observers`` and are marked as simulated wherever they
+appear.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from analysis.observers import Answer, Observer, draw_observer
+from analysis.simulation.observers import Answer, Observer, draw_observer
 from study.answering import about_answers, attention_answer, stimulus, trial_answers
 from study.checking import pass_checks
 from study.data import answers, arms, consents, pauses, studies, trials, views

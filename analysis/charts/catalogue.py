@@ -34,7 +34,7 @@ from analysis.charts.material import Material
 from analysis.correlation import rank_correlations
 from analysis.curves.curve import NOTICED, PREFERRED, RATED
 from analysis.descriptive import mean_ratings, rating_counts
-from analysis.reading import Tables
+from analysis.tables.reading import Tables
 
 Part = Literal["answer", "verdicts", "sizes", "ratings", "comparisons", "people"]
 """Where a chart stands in the report: beside the answer, or in one of the sections after it."""

@@ -29,8 +29,8 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.descriptive import mean_ratings, rating_counts
-from analysis.ordering import distance_order, lod_order
-from analysis.reading import Tables
+from analysis.tables.ordering import distance_order, lod_order
+from analysis.tables.reading import Tables
 from analysis.wording import number
 
 DISTRIBUTION: Final = "Distribution of the ratings"

@@ -37,9 +37,9 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.descriptive import mean_ratings, person_means
-from analysis.ordering import lod_order
-from analysis.reading import Tables
 from analysis.shares import PAIRED, clips_or_pairings
+from analysis.tables.ordering import lod_order
+from analysis.tables.reading import Tables
 
 TITLE: Final = "Perceived realism of each eye, per clip"
 _CLIPS_PER_ROW: Final = 10

@@ -35,8 +35,8 @@ from analysis.curves.curve import (
     SizeCurve,
     curve_table,
 )
-from analysis.ordering import distance_order, lod_order
-from analysis.reading import Tables
+from analysis.tables.ordering import distance_order, lod_order
+from analysis.tables.reading import Tables
 from analysis.wording import people, percent
 
 _PANEL_IN: Final = 2.7

@@ -28,7 +28,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.decision.verdicts import NOT_SHOWN
-from analysis.ordering import distance_order, lod_order
+from analysis.tables.ordering import distance_order, lod_order
 from analysis.wording import milliseconds, percent
 
 TITLE: Final = "Which LoD is enough, and how sure that is"

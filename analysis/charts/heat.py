@@ -22,7 +22,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.descriptive import person_means
-from analysis.ordering import in_order
+from analysis.tables.ordering import in_order
 from analysis.wording import people
 
 HEAT_MAP: Final = "What each person gave to what"

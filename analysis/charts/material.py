@@ -7,12 +7,12 @@ from functools import cached_property
 
 import pandas as pd
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
 from analysis.inference import Inference, infer
-from analysis.reading import Tables
 from analysis.screening.flags import flags_of
 from analysis.screening.signals import observer_signals
 from analysis.screening.weights import observer_weights
+from analysis.tables.reading import Tables
 
 
 @dataclass(frozen=True)

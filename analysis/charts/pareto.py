@@ -25,7 +25,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.decision.pareto import ParetoPoint, pareto_table
-from analysis.ordering import lod_order
+from analysis.tables.ordering import lod_order
 
 TITLE: Final = "Realism against measured cost"
 NO_COST: Final = (

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analysis.charts.style import INK, SMALL, lod_colour, lod_marker
-from analysis.reading import Tables
+from analysis.tables.reading import Tables
 
 
 def records(frame: pd.DataFrame) -> list[dict[str, Any]]:

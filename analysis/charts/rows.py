@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from analysis.charts.parts import grouped_places, head_groups
 from analysis.charts.style import INK, PAGE_WIDTH_IN, QUIET, SMALL, new_figure, tidy
-from analysis.reading import Tables
+from analysis.tables.reading import Tables
 
 _ROW_IN: Final = 0.29
 _HEIGHT_IN: Final = 1.15  # title, axis and legend

@@ -20,7 +20,7 @@ from analysis.charts.style import (
 )
 from analysis.descriptive import mean_ratings
 from analysis.estimates.preference import Preference
-from analysis.ordering import lod_order
+from analysis.tables.ordering import lod_order
 from analysis.wording import people
 
 LATENT: Final = "Realism by the ordinal mixed model"

@@ -28,7 +28,6 @@ from analysis.charts.style import (
     new_figure,
     tidy,
 )
-from analysis.reading import Tables
 from analysis.shares import (
     OUTCOMES,
     PAIR_OUTCOMES,
@@ -39,7 +38,8 @@ from analysis.shares import (
     pair_comparison_shares,
     pair_notice_shares,
 )
-from analysis.table import NOTICED
+from analysis.tables.columns import NOTICED
+from analysis.tables.reading import Tables
 
 CLIP_COMPARED: Final = "Which eye is more realistic, per clip"
 PAIR_COMPARED: Final = "Which LoD is more realistic, per pair"

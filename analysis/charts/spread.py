@@ -26,7 +26,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.descriptive import mean_ratings
-from analysis.ordering import lod_order
+from analysis.tables.ordering import lod_order
 from analysis.wording import number
 
 SPREAD: Final = "Where people disagree"

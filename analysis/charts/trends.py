@@ -24,8 +24,8 @@ from analysis.charts.style import (
 )
 from analysis.correlation import rank_correlations
 from analysis.descriptive import answered, mean_ratings, person_means
-from analysis.ordering import distance_order, lod_order
-from analysis.reading import Tables
+from analysis.tables.ordering import distance_order, lod_order
+from analysis.tables.reading import Tables
 from analysis.wording import number
 
 AGAINST_LOD: Final = "Perceived against actual level of detail"

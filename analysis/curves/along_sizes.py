@@ -14,7 +14,7 @@ from analysis.curves.preferred import preferred_curves
 from analysis.curves.rated import rated_curves
 from analysis.curves.sizes import MEASURES, PIXELS, Measure, best_lod, with_size
 from analysis.decision.margins import Margins
-from analysis.reading import Tables
+from analysis.tables.reading import Tables
 
 
 @dataclass(frozen=True)

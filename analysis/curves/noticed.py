@@ -30,7 +30,7 @@ from analysis.curves.observed import share_points
 from analysis.curves.sizes import Measure, along, with_size
 from analysis.decision.margins import Margins
 from analysis.models.ordinal import LENIENCY, OrdinalModel
-from analysis.table import NOTICED as GRADES
+from analysis.tables.columns import NOTICED as GRADES
 
 Floats = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
 from analysis.decision.effects import EffectVerdict, saving_of
 from analysis.decision.sentences import price
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
+from analysis.costs.savings import Saving, effect_saving, lod_saving
 from analysis.decision.margins import Margins
 from analysis.decision.verdicts import (
     DIFFERENT,
@@ -26,8 +27,7 @@ from analysis.decision.verdicts import (
 from analysis.estimates.noticing import Noticing
 from analysis.estimates.realism import Realism
 from analysis.multiplicity import holm
-from analysis.savings import Saving, effect_saving, lod_saving
-from analysis.table import EFFECTS
+from analysis.tables.columns import EFFECTS
 
 Levels = Mapping[str, Mapping[str, str]]
 

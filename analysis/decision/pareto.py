@@ -15,9 +15,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
+from analysis.costs.savings import cost_draws
 from analysis.estimates.realism import Realism
-from analysis.savings import cost_draws
 from analysis.wording import listed, percent
 
 Floats = NDArray[np.float64]

@@ -14,14 +14,14 @@ from typing import Any, Final
 
 import numpy as np
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
+from analysis.costs.savings import frame_ms
 from analysis.curves.along_sizes import Curves
 from analysis.curves.curve import MARGIN, SHOWN
 from analysis.decision.effects import Levels
 from analysis.decision.margins import Margins
 from analysis.decision.size_limits import QUESTIONS, Verdicts, size_limits
-from analysis.savings import frame_ms
-from analysis.table import EFFECTS, STANDARD_LODS
+from analysis.tables.columns import EFFECTS, STANDARD_LODS
 from analysis.wording import percent
 
 SCHEMA: Final = 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
 from analysis.decision.policy import Policy, PolicyStep
 from analysis.wording import listed, milliseconds, number
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
+from analysis.costs.savings import Saving, lod_saving
 from analysis.decision.verdicts import DIFFERENT, Decision, Verdict
-from analysis.savings import Saving, lod_saving
 from analysis.wording import listed, milliseconds, number, percent
 
 

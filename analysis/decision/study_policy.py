@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
 from analysis.curves.along_sizes import Curves
 from analysis.curves.sizes import best_lod
 from analysis.decision.effects import levels_of
@@ -15,8 +15,8 @@ from analysis.decision.margins import Margins
 from analysis.decision.policy import Policy, policy_of, with_curves
 from analysis.decision.verdicts import EQUIVALENT, Decision
 from analysis.descriptive import answered
-from analysis.ordering import lod_ranks
-from analysis.reading import Tables
+from analysis.tables.ordering import lod_ranks
+from analysis.tables.reading import Tables
 from analysis.versions import own_version
 
 

@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from analysis.cost import Costs
+from analysis.costs.cost import Costs
+from analysis.costs.savings import lod_saving, saving_columns
 from analysis.decision.effects import EffectVerdict, saving_of
 from analysis.decision.verdicts import Decision, Test
 from analysis.multiplicity import holm
-from analysis.savings import lod_saving, saving_columns
 
 COLUMNS: Final = (
     *("distance", "lod", "best", "change", "verdict"),

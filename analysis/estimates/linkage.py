@@ -13,7 +13,7 @@ import pandas as pd
 
 from analysis.descriptive import answered
 from analysis.estimates.stimuli import Cell
-from analysis.ordering import distance_order, lod_ranks
+from analysis.tables.ordering import distance_order, lod_ranks
 from analysis.wording import listed
 
 

@@ -21,8 +21,8 @@ from analysis.models.fitting import OrdinalFit, fit
 from analysis.models.ordinal import LENIENCY, OrdinalModel
 from analysis.models.predictors import Linear
 from analysis.models.priors import PRIORS
-from analysis.ordering import distance_order, lod_ranks
-from analysis.table import NOTICED
+from analysis.tables.columns import NOTICED
+from analysis.tables.ordering import distance_order, lod_ranks
 
 Floats = NDArray[np.float64]
 Pair = tuple[str, str, str]

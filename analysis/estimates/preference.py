@@ -24,7 +24,7 @@ from analysis.models.fitting import OrdinalFit, fit
 from analysis.models.ordinal import LENIENCY, STYLE, OrdinalModel
 from analysis.models.predictors import Linear
 from analysis.models.priors import PRIORS
-from analysis.ordering import distance_order, lod_ranks
+from analysis.tables.ordering import distance_order, lod_ranks
 
 Floats = NDArray[np.float64]
 Cell = tuple[str, str]

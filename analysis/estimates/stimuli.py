@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from analysis.descriptive import answered
 from analysis.models.counts import Counts, count_answers
 from analysis.models.predictors import Contrasted, Linear, Predictor
-from analysis.ordering import distance_order, lod_order
+from analysis.tables.ordering import distance_order, lod_order
 
 Floats = NDArray[np.float64]
 Cell = tuple[str, str]

@@ -17,9 +17,9 @@ from scipy.special import ndtr, roots_hermitenorm
 
 from analysis.decision.margins import Margins
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT
-from analysis.observers import Stimulus
-from analysis.population import POPULATION, Population, rank_of
-from analysis.table import STANDARD_LODS
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION, Population, rank_of
+from analysis.tables.columns import STANDARD_LODS
 
 Floats = NDArray[np.float64]
 Cell = tuple[str, str]

@@ -1,4 +1,4 @@
-"""Many simulated observers at once: the law of ``analysis.observers`` on whole arrays.
+"""Many simulated observers at once: the law of ``analysis.simulation.observers`` on whole arrays.
 
 A study's answers cost milliseconds, so that it can be repeated hundreds of times. That both say the
 same is tested; free text, response times and views are left out.
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from analysis.population import POPULATION, Population
+from analysis.simulation.population import POPULATION, Population
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.intp]

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.observers import Stimulus
+from analysis.simulation.observers import Stimulus
 
 Integers = NDArray[np.intp]
 COLUMNS: Final = ("participant", "position", "clip")

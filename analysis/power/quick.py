@@ -25,11 +25,11 @@ from analysis.models.draws import draw
 from analysis.models.fitting import fit
 from analysis.models.ordinal import LENIENCY, OrdinalModel
 from analysis.models.priors import PRIORS
-from analysis.ordering import lod_ranks
 from analysis.power.crowd import NOTHING, Answers
 from analysis.power.plan import Integers, Plan
 from analysis.power.tables import as_tables
-from analysis.table import SCALE
+from analysis.tables.columns import SCALE
+from analysis.tables.ordering import lod_ranks
 
 
 @dataclass(frozen=True)

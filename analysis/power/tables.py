@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from analysis.power.crowd import NOTHING, Answers
 from analysis.power.plan import Integers, Plan
-from analysis.reading import Tables, tables_from
-from analysis.table import NOTICED
+from analysis.tables.columns import NOTICED
+from analysis.tables.reading import Tables, tables_from
 
 _GRADES: Final = tuple(reversed(NOTICED))  # no, unsure, yes: as the crowd's answers number them
 

@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any, Final
 
 from analysis.decision.margins import Margins
-from analysis.observers import Stimulus
 from analysis.power.assumed import (
     Assumed,
     Cell,
@@ -24,6 +23,7 @@ from analysis.power.assumed import (
     lower_cells,
     named_truth,
 )
+from analysis.simulation.observers import Stimulus
 
 BASES: Final = ("thesis", "equal")
 _ACCEPTED: Final[Mapping[str, tuple[float, float, str]]] = {

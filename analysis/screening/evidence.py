@@ -15,10 +15,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.reading import Tables
 from analysis.screening.following import others_means
 from analysis.screening.presented import Floats, Places, Presented, sums
-from analysis.table import NOTICED
+from analysis.tables.columns import NOTICED
+from analysis.tables.reading import Tables
 
 LEFT, RIGHT, COMPARED, NOTED = "left", "right", "comparison", "noticed"
 _VALUES: Final = (LEFT, RIGHT, COMPARED)

@@ -12,7 +12,7 @@ from typing import Final
 import pandas as pd
 
 from analysis.decision.verdicts import Decision
-from analysis.reading import Tables
+from analysis.tables.reading import Tables
 
 Decide = Callable[[Tables, dict[str, float]], Sequence[Decision]]
 WEIGHTED: Final = "everyone, flagged people weigh less"

@@ -1,7 +1,7 @@
 """Export: the tables of a study and the codebook that explains them, as files or data frames.
 
-The columns are the analysis's own (``analysis.table``). Missing is empty, never zero. Who did not
-consent or withdrew is in no table.
+The columns are the analysis's own (``analysis.tables.columns``). Missing is empty, never zero. Who
+did not consent or withdrew is in no table.
 """
 
 from __future__ import annotations

@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
-from analysis.reading import Tables, tables_from
-from analysis.simulated import simulate_tables
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
+from analysis.simulation.simulated import simulate_tables
+from analysis.tables.reading import Tables, tables_from
 
 THESIS = (
     ("macroscopic", "medium", "low"),

@@ -2,8 +2,8 @@
 
 from analysis.audit import ShownClip, audit_design, shown_clips
 from analysis.inference import infer
-from analysis.limits import limits
-from analysis.reading import Tables, tables_from
+from analysis.report.limits import limits
+from analysis.tables.reading import Tables, tables_from
 
 
 def clips(*shown: tuple[str, str, str]) -> list[ShownClip]:

@@ -12,7 +12,7 @@ from analysis.correlation import (
     rank_correlations,
     repeated_measures_correlation,
 )
-from analysis.reading import tables_from
+from analysis.tables.reading import tables_from
 
 # Bland and Altman, BMJ 1995;310:446, table 1: intramural pH and PaCO2 of eight people.
 BLAND = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from analysis.audit import audit_tables
 from analysis.coverage import coverage, linked_groups
-from analysis.reading import Tables
+from analysis.tables.reading import Tables
 
 NEAR, FAR, HIGH = ("near", "low"), ("far", "low"), ("near", "high")
 

@@ -12,8 +12,8 @@ from analysis.descriptive import (
     rating_counts,
     t_interval,
 )
-from analysis.ordering import distance_order, lod_order, natural
-from analysis.reading import tables_from
+from analysis.tables.ordering import distance_order, lod_order, natural
+from analysis.tables.reading import tables_from
 
 
 def ratings_from(rows: list[tuple[object, ...]], *names: str) -> pd.DataFrame:

@@ -6,16 +6,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.cost import COLUMNS, Costs
+from analysis.costs.cost import COLUMNS, Costs
 from analysis.deciding import decisions_of
 from analysis.decision.sentences import answer
 from analysis.decision.verdicts import NOT_SHOWN, Margins
 from analysis.inference import infer
-from analysis.inference_tables import inference_tables
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
-from analysis.reading import Tables, tables_from
-from analysis.simulated import simulate_tables
+from analysis.report.inference_tables import inference_tables
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
+from analysis.simulation.simulated import simulate_tables
+from analysis.tables.reading import Tables, tables_from
 from renderer.lod.policy import parse_policy
 
 

@@ -4,7 +4,7 @@ import pandas as pd
 import pytest
 
 from analysis.quality import missing_answers, people_overview, quality_statements
-from analysis.reading import Tables, tables_from
+from analysis.tables.reading import Tables, tables_from
 
 
 def tables(rows: list[tuple[object, ...]], *names: str, **more: pd.DataFrame) -> Tables:

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from analysis.reading import tables_from
 from analysis.shares import (
     comparison_shares,
     notice_shares,
@@ -13,6 +12,7 @@ from analysis.shares import (
     pair_notice_shares,
     wilson,
 )
+from analysis.tables.reading import tables_from
 
 
 def comparisons_from(rows: list[tuple[object, ...]]) -> pd.DataFrame:

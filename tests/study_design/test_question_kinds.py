@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-from analysis.observers import draw_observer
+from analysis.simulation.observers import draw_observer
 from study.answering import about_answers
 from study.design.definition import DefinitionError, parse_definition
 from study.design.faults import KINDS

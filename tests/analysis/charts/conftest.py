@@ -10,11 +10,11 @@ from matplotlib.text import Text
 
 from analysis.charts import CHARTS
 from analysis.charts.material import Material
-from analysis.cost import Costs
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
-from analysis.reading import tables_from
-from analysis.simulated import simulate_tables
+from analysis.costs.cost import Costs
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
+from analysis.simulation.simulated import simulate_tables
+from analysis.tables.reading import tables_from
 
 PAIRS = (("high", "ultra"), ("ultra", "low"), ("ultra", "ultra"))
 

@@ -21,9 +21,9 @@ from analysis.charts.style import (
     lod_colour,
     scale_colours,
 )
-from analysis.observers import Stimulus
-from analysis.reading import Tables, tables_from
-from analysis.simulated import simulate_tables
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.simulated import simulate_tables
+from analysis.tables.reading import Tables, tables_from
 
 
 def texts(figure: Figure) -> list[str]:

@@ -10,10 +10,10 @@ from analysis.curves.curve import D_PRIME_1, MARGIN
 from analysis.curves.noticed import noticed_curves
 from analysis.curves.sizes import PIXELS
 from analysis.decision.margins import DEFAULT
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
-from analysis.reading import Tables, tables_from
-from analysis.simulated import simulate_tables
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
+from analysis.simulation.simulated import simulate_tables
+from analysis.tables.reading import Tables, tables_from
 
 LOW = 3.8  # d' of low beside ultra at full size
 MOST = LOW * (1 + POPULATION.share_of_experts * (POPULATION.expert_sensitivity - 1))

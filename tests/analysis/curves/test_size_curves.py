@@ -29,9 +29,9 @@ from analysis.curves.sizes import DEGREES, PIXELS, crossing, with_size
 from analysis.decision.margins import DEFAULT
 from analysis.models.combined import Beside, Renamed, Scaled, Together
 from analysis.models.predictors import Linear, Saturating
-from analysis.observers import Stimulus
-from analysis.reading import Tables, tables_from
-from analysis.simulated import simulate_tables
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.simulated import simulate_tables
+from analysis.tables.reading import Tables, tables_from
 
 RANKS = {"low": 0.0, "medium": 1.0, "high": 2.0, "ultra": 3.0}
 SIZES = (12.0, 24.0, 48.0, 96.0, 192.0, 350.0)

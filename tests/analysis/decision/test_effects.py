@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.cost import COLUMNS, EFFECT_COLUMNS, Costs
+from analysis.costs.cost import COLUMNS, EFFECT_COLUMNS, Costs
 from analysis.decision.effect_sentences import effect_answers
 from analysis.decision.effects import (
     Change,
@@ -21,7 +21,7 @@ from analysis.decision.margins import Margins
 from analysis.decision.verdict_tables import effect_table
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT, NOT_SHOWN
 from analysis.multiplicity import holm
-from analysis.table import EFFECTS
+from analysis.tables.columns import EFFECTS
 
 RANKS = {"low": 0.0, "ultra": 3.0, "no-caustics": -1.0, "dull": -1.0}
 ULTRA = dict.fromkeys(EFFECTS, "ultra")

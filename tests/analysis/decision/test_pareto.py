@@ -8,11 +8,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.cost import COLUMNS, Costs
+from analysis.costs.cost import COLUMNS, Costs
+from analysis.costs.savings import Saving, cost_draws, lod_saving, saving_columns
 from analysis.decision.pareto import pareto, pareto_sentences, pareto_table
 from analysis.decision.sentences import price
 from analysis.models.draws import DRAWS
-from analysis.savings import Saving, cost_draws, lod_saving, saving_columns
 
 
 @dataclass

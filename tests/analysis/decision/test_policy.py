@@ -9,14 +9,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.cost import COLUMNS, Costs
+from analysis.costs.cost import COLUMNS, Costs
 from analysis.curves.along_sizes import Curves
 from analysis.curves.curve import MARGIN, NOTICED, RATED, SizeCurve, Threshold
 from analysis.curves.sizes import PIXELS
 from analysis.decision.margins import Margins
 from analysis.decision.policy import Policy, policy_of
 from analysis.decision.policy_sentences import policy_answer
-from analysis.table import EFFECTS
+from analysis.tables.columns import EFFECTS
 from renderer.detail import Detail
 from renderer.lod.policy import parse_policy
 

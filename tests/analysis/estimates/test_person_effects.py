@@ -8,7 +8,7 @@ import pytest
 from analysis.estimates import person_effects as module
 from analysis.estimates.person_effects import COLUMNS, person_effects
 from analysis.estimates.realism import realism_of
-from analysis.reading import Tables
+from analysis.tables.reading import Tables
 
 
 def test_the_thesiss_people_differ_in_leniency(

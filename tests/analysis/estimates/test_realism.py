@@ -10,10 +10,10 @@ from scipy.special import ndtr
 from analysis.estimates.realism import Realism, realism_of
 from analysis.estimates.stimuli import stimuli_of
 from analysis.models.ordinal import PERSON_EFFECTS
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
-from analysis.reading import Tables, tables_from
-from analysis.simulated import simulate_tables
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
+from analysis.simulation.simulated import simulate_tables
+from analysis.tables.reading import Tables, tables_from
 
 LODS = ("low", "medium", "high", "ultra")
 

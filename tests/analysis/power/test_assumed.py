@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from analysis.decision.margins import Margins
-from analysis.observers import Stimulus
 from analysis.power.assumed import (
     Differences,
     best_lods,
@@ -20,6 +19,7 @@ from analysis.power.assumed import (
 )
 from analysis.power.crowd import answer_all, draw_crowd
 from analysis.power.truth_file import read_truth
+from analysis.simulation.observers import Stimulus
 
 CLIPS = (
     Stimulus("near", 160.0, "low", "ultra"),

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from analysis.observers import Stimulus, draw_observer
-from analysis.population import POPULATION
 from analysis.power.assumed import thesis_like
 from analysis.power.crowd import NOTHING, Answers, answer_all, draw_crowd
+from analysis.simulation.observers import Stimulus, draw_observer
+from analysis.simulation.population import POPULATION
 
 CLIPS = (
     Stimulus("macroscopic", 350.0, "low", "ultra"),

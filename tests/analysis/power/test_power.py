@@ -15,8 +15,6 @@ from analysis.decision.margins import DEFAULT, Margins
 from analysis.decision.verdicts import decide
 from analysis.estimates.noticing import noticing_of
 from analysis.estimates.realism import realism_of
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
 from analysis.power.assumed import named_truth
 from analysis.power.outcome import Outcome, outcome_of
 from analysis.power.plan import Plan
@@ -25,6 +23,8 @@ from analysis.power.replicates import Scene, answers_of, simulate_studies
 from analysis.power.sentences import answer_lines, table_lines
 from analysis.power.tables import as_tables
 from analysis.power.writing import write_power
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
 
 CATCH = [("macroscopic", "low", "low"), ("far", "ultra", "ultra")]
 PAIRS = [

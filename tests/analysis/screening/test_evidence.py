@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.observers import Stimulus
-from analysis.reading import Tables, tables_from
 from analysis.screening.evidence import COMPARED, LEFT, NOTED, RIGHT, _fit, _Trials, evidence_of
-from analysis.simulated import simulate_tables
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.simulated import simulate_tables
+from analysis.tables.reading import Tables, tables_from
 
 
 def test_over_all_orders_the_evidence_has_mean_0_and_variance_1() -> None:

@@ -8,14 +8,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
-from analysis.reading import Tables, tables_from
 from analysis.screening.flags import EXTREME, FALSE_ALARMS, STRAIGHT_LINER, flags_of
 from analysis.screening.signals import COLUMNS, observer_signals
 from analysis.screening.weights import FLAGGED, observer_weights
-from analysis.simulated import simulate_tables
-from analysis.spoilers import SPOILERS
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
+from analysis.simulation.simulated import simulate_tables
+from analysis.simulation.spoilers import SPOILERS
+from analysis.tables.reading import Tables, tables_from
 
 LODS = ("low", "medium", "high", "ultra")
 

@@ -10,9 +10,6 @@ import pytest
 from analysis.deciding import decisions_of
 from analysis.decision import verdicts
 from analysis.decision.verdicts import Decision, Verdict
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
-from analysis.reading import Tables, tables_from
 from analysis.screening.flags import flags_of
 from analysis.screening.sensitivity import (
     NOBODY_FLAGGED,
@@ -23,8 +20,11 @@ from analysis.screening.sensitivity import (
 )
 from analysis.screening.signals import observer_signals
 from analysis.screening.weights import observer_weights
-from analysis.simulated import simulate_tables
-from analysis.spoilers import SPOILERS
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
+from analysis.simulation.simulated import simulate_tables
+from analysis.simulation.spoilers import SPOILERS
+from analysis.tables.reading import Tables, tables_from
 
 NAMED = {"S001": ("shuffler",), "S002": ("inverter",)}
 

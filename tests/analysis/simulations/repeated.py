@@ -24,8 +24,6 @@ from analysis.curves.noticed import noticed_curves
 from analysis.curves.sizes import PIXELS
 from analysis.decision.margins import DEFAULT
 from analysis.estimates.preference import preference_of
-from analysis.observers import Stimulus
-from analysis.population import POPULATION
 from analysis.power.assumed import (
     Assumed,
     Differences,
@@ -37,8 +35,10 @@ from analysis.power.plan import Plan
 from analysis.power.quick import Prepared, prepare
 from analysis.power.replicates import answers_of
 from analysis.power.tables import as_tables
-from analysis.reliability import reliability
-from analysis.table import STANDARD_LODS
+from analysis.reliability.reliability import reliability
+from analysis.simulation.observers import Stimulus
+from analysis.simulation.population import POPULATION
+from analysis.tables.columns import STANDARD_LODS
 
 Intervals = dict[str, tuple[float, float]]
 BEST = STANDARD_LODS[-1]

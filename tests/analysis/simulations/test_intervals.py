@@ -1,7 +1,8 @@
 """Simulated people whose truth is known: intervals hold it, and tests raise few false alarms.
 
-Observers are those of ``analysis.observers``, whom the models describe only in part. The bounds of
-short runs leave room for their own error: a share of 0.95 or 0.05 fails them once in a thousand.
+Observers are those of ``analysis.simulation.observers``, whom the models describe only in part. The
+bounds of short runs leave room for their own error: a share of 0.95 or 0.05 fails them once in a
+thousand.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from scipy.stats import binom
 from analysis.decision.margins import DEFAULT
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT
 from analysis.power.replicates import answers_of
-from analysis.table import STANDARD_LODS
+from analysis.tables.columns import STANDARD_LODS
 
 sys.path.append(str(Path(__file__).parent))
 from repeated import (

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.cost import read_bench as read_costs
+from analysis.costs.cost import read_bench as read_costs
 from renderer.benchmark.result import Bench, read_bench, write_bench
 
 

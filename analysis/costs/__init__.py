@@ -1,0 +1,1 @@
+"""What LoDs cost on a renderer, and what cheaper ones save."""

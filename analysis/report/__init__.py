@@ -1,0 +1,1 @@
+"""The report: the answer in words, its tables, its page, its files."""

@@ -1,0 +1,103 @@
+"""The report as one page that loads nothing: texts, tables and charts put into ``report.html``."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from analysis.audit import Audit
+from analysis.charts import CHARTS
+from analysis.charts.style import SIMULATED
+from analysis.costs.cost import Costs
+from analysis.decision.pareto import pareto_sentences
+from analysis.inference import Inference
+from analysis.report.decision_tables import (
+    effects_table,
+    joint_table,
+    policy_table,
+    thresholds_table,
+)
+from analysis.report.inference_tables import inference_tables
+from analysis.report.methods import methods
+from analysis.report.sections import Section
+from analysis.report.tables import (
+    ReportTable,
+    comparison_tables,
+    design_table,
+    quality_tables,
+    rating_tables,
+)
+from analysis.tables.reading import Tables
+
+if TYPE_CHECKING:
+    from analysis.report.publish import Summary
+
+REPORT: Final = "report.html"
+
+
+@dataclass(frozen=True)
+class Parts:
+    """What the report is put together from, beside the summary and the drawn charts.
+
+    ``findings`` and ``people`` are the sections before and after the quality of the data.
+    """
+
+    audit: Audit
+    costs: Costs | None
+    inference: Inference
+    findings: Sequence[Section]
+    people: Sequence[Section]
+
+
+def report_page(
+    tables: Tables, summary: Summary, *, parts: Parts, charts: Mapping[str, bytes]
+) -> str:
+    """Return the page; ``charts`` are the drawn ones as SVG, by name."""
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    own = parts.inference
+    studies = tables.ratings[["study", "study_version"]].dropna(how="all").drop_duplicates()
+    return environment.get_template(REPORT).render(
+        summary=summary,
+        study=", ".join(" ".join(row.dropna()) for _, row in studies.iterrows()),
+        source=Path(tables.source).name,
+        charts=_by_part(charts),
+        margins=own.margins.origins,
+        size_notes=own.curves.notes,
+        model_tables=_filled(*inference_tables(own), effects_table(own), joint_table(own)),
+        size_tables=_filled(thresholds_table(own), policy_table(own)),
+        cost_sentences=pareto_sentences(own.pareto),
+        rating_tables=rating_tables(tables, parts.costs),
+        comparison_tables=comparison_tables(tables),
+        design_table=design_table(parts.audit),
+        quality_tables=quality_tables(tables),
+        findings_more=parts.findings,
+        people_more=parts.people,
+        methods=methods(tables, parts.costs),
+        label=SIMULATED,
+    )
+
+
+def _filled(*tables: ReportTable) -> list[ReportTable]:
+    """Return the tables that have rows."""
+    return [table for table in tables if table.rows]
+
+
+def _by_part(charts: Mapping[str, bytes]) -> dict[str, list[dict[str, Any]]]:
+    made: dict[str, list[dict[str, Any]]] = {chart.part: [] for chart in CHARTS}
+    for chart in CHARTS:
+        image = base64.b64encode(charts[chart.name]).decode()
+        made[chart.part].append(
+            {"name": chart.name, "title": chart.title, "caption": chart.caption, "image": image}
+        )
+    return made

@@ -1,0 +1,1 @@
+"""Simulated observers: honest ones, and ones that spoil data."""

@@ -1,0 +1,1 @@
+"""The thesis's findings beside these data."""

@@ -1,0 +1,1 @@
+"""What people wrote: a code book, and how many mention what."""
