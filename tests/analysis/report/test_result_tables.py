@@ -18,7 +18,7 @@ from analysis.simulation.simulated import simulate_tables
 from analysis.tables.columns import EFFECTS, STANDARD_LODS
 from analysis.tables.reading import tables_from
 
-TEXT = (Path(__file__).parents[2] / "docs" / "tables.md").read_text(encoding="utf-8")
+TEXT = (Path(__file__).parents[3] / "docs" / "tables.md").read_text(encoding="utf-8")
 LODS = ("low", "ultra", "no-caustics")
 NEEDED = {"simulated", "verdict", "margins", "confidence", "p_equivalent", "is_moved", "codes"}
 

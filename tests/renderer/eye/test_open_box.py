@@ -42,7 +42,7 @@ def test_the_box_loses_nothing_and_spares_most_of_the_picture(
     renderer = FrameRenderer(gl, spec, scene=standard_scene)
     confined = [renderer.render(azimuth) for azimuth in AZIMUTHS_DEG]
     half = 160 * 180
-    assert len(boxes) == 6
+    assert len(boxes) == 12  # three frames of two eyes, each drawn and outlined
     assert all(0 < width * height < 0.6 * half for _, _, width, height in boxes)
     monkeypatch.setattr(eyes_module, "common_box", lambda first, _second: first)
     for azimuth, frame in zip(AZIMUTHS_DEG, confined, strict=True):

@@ -23,7 +23,7 @@ def upgrade() -> None:
         sa.Column("kind", sa.String(length=20), nullable=False),
         sa.Column("as_of", sa.DateTime(timezone=True), nullable=True),
         sa.Column("seen", sa.String(length=100), nullable=True),
-        sa.Column("took_s", sa.Float(), nullable=True),
+        sa.Column("took_s", sa.Double(), nullable=True),
         sa.Column("summary", sa.JSON(), nullable=True),
         sa.Column("claimed_by", sa.String(length=200), nullable=True),
         sa.Column("lease_until", sa.DateTime(timezone=True), nullable=True),
