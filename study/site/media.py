@@ -7,7 +7,6 @@ they have for ever.
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -48,14 +47,14 @@ class ClipShelf:
 
     def _is_whole(self, record: ClipRecord) -> bool:
         try:
-            found = os.stat(f"{self.folder}/{record.file}")  # noqa: PTH116 - at a third of the price
+            found = (self.folder / record.file).stat()
         except OSError:
             return False
         return S_ISREG(found.st_mode) and found.st_size == record.file_bytes
 
     def _refresh(self) -> None:
         try:
-            found = os.stat(f"{self.folder}/{MANIFEST_NAME}")  # noqa: PTH116 - as above
+            found = (self.folder / MANIFEST_NAME).stat()
         except FileNotFoundError:
             return
         stamp = (found.st_mtime_ns, found.st_ino)

@@ -57,8 +57,8 @@ class Stage:
 
     def _render(self, corners: npt.NDArray[np.float64], z_mm: float, *colour: float) -> None:
         rows = np.column_stack([corners, np.full(3, z_mm)]).astype(np.float32)
-        self.program["u_clip"].write(np.ascontiguousarray(CLIP.T).tobytes())  # type: ignore[union-attr]  # a plain uniform
-        self.program["u_colour"].value = colour  # type: ignore[union-attr]  # a plain uniform
+        self.program["u_clip"].write(np.ascontiguousarray(CLIP.T).tobytes())
+        self.program["u_colour"].value = colour
         self.gl.vertex_array(self.program, [(self.gl.buffer(rows.tobytes()), "3f", "p")]).render()
 
     def draw(self, *, is_plain: bool = True, is_smooth: bool = True) -> npt.NDArray[np.float32]:

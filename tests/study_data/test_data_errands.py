@@ -168,7 +168,7 @@ def test_prepared_rows_are_what_the_tables_classes_read(
 
     with db.reading() as session:
         rows = session.scalars(select(kind).order_by(kind.id)).all()
-        expected = [{name: getattr(row, name) for name in table.c.keys()} for row in rows]  # noqa: SIM118 - columns
+        expected = [{column.key: getattr(row, column.key) for column in table.c} for row in rows]
     assert [row._asdict() for row in db.look(look)] == expected
 
 

@@ -79,7 +79,7 @@ def test_without_equal_pairs_there_is_no_sensitivity(
     thesis_tables: object, texts_of: Texts
 ) -> None:
     chart = next(own for own in CHARTS if own.name == "detection")
-    said = texts_of(chart.draw(Material(thesis_tables)))  # type: ignore[arg-type]
+    said = texts_of(chart.draw(Material(thesis_tables)))
     assert any("No pair of equal LoDs has been answered" in text for text in said)
 
 
