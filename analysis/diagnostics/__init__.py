@@ -1,0 +1,1 @@
+"""Does the model of ratings fit, and would another fit better? Read beside the results."""
