@@ -1,4 +1,4 @@
-"""What all tests share: databases of both kinds, a Ctrl-C that reaches the programs they start.
+"""What all tests share: databases of both kinds, small studies, a Ctrl-C that reaches programs.
 
 A test that asks for ``database_url``, itself or through another fixture, runs twice: on SQLite and
 on a real PostgreSQL server, which the first of them starts. Browser tests and those that name
@@ -9,9 +9,11 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
 import shutil
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -86,3 +88,57 @@ def database_url(
     server.execute(f"CREATE DATABASE {name} TEMPLATE empty STRATEGY file_copy")
     yield server.url(name)
     server.execute(f"DROP DATABASE {name} WITH (FORCE)")
+
+
+@pytest.fixture(scope="session")
+def thesis_text() -> str:
+    """The thesis's study file without its translations, which lie beside it."""
+    file = resources.files("study.design") / "definitions" / "thesis.toml"
+    return replaced(file.read_text(encoding="utf-8"), {r"^translations = .*\n": ""})
+
+
+@pytest.fixture
+def thesis_with(thesis_text: str) -> Callable[[str, str], str]:
+    """What gives the thesis's study file other contents of one table."""
+
+    def change(table: str, contents: str) -> str:
+        old = rf"^\[{table}\].*\n(.|\n)*?(?=^\[)"
+        return replaced(thesis_text, {old: f"[{table}]\n{contents}\n\n"})
+
+    return change
+
+
+@pytest.fixture
+def write_short_study(thesis_text: str, tmp_path: Path) -> Callable[..., Path]:
+    """What writes a study like the thesis's, but for clips that are rendered in no time."""
+
+    def write(*clips: tuple[str, str, str, str], size: str, duration_s: float) -> Path:
+        """``clips`` are each an id, a distance and the LoDs of the left and the right eye."""
+        names = ("id", "distance", "left", "right")
+        tables = (
+            "".join(f'{name} = "{value}"\n' for name, value in zip(names, clip, strict=True))
+            for clip in clips
+        )
+        changes = {
+            r"^sizes = .*$": f'sizes = ["{size}"]',
+            r"^duration_s = .*$": f"duration_s = {duration_s}",
+            r"^fps = .*$": "fps = 10",
+            r"^crowd = .*$": "crowd = 0",
+            r"^directions = .*$": 'directions = ["rightward"]',
+            r"^\[\[practice\]\](.|\n)*?(?=^\[consent\])": "".join(
+                f"[[clips]]\n{table}\n" for table in tables
+            ),
+        }
+        path = tmp_path / "short.toml"
+        path.write_text(replaced(thesis_text, changes), encoding="utf-8")
+        return path
+
+    return write
+
+
+def replaced(text: str, changes: Mapping[str, str]) -> str:
+    """Return a text with each pattern replaced, every one of which is found exactly once."""
+    for pattern, value in changes.items():
+        text, count = re.subn(pattern, lambda _, value=value: value, text, flags=re.MULTILINE)
+        assert count == 1, pattern
+    return text

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -101,32 +100,26 @@ def test_an_error_is_one_clear_line(
     assert list(tmp_path.iterdir()) == []
 
 
-def thesis_alone() -> str:
-    """Return the thesis's study file without the translations that lie beside it."""
-    text = (ROOT / "study/design/definitions/thesis.toml").read_text(encoding="utf-8")
-    return re.sub(r"^translations = .*\n", "", text, flags=re.MULTILINE)
-
-
 @pytest.mark.parametrize("command", ["check", "render"])
 def test_a_study_whose_picture_cannot_light_a_scene_is_told_before_any_work(
-    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    command: str, thesis_text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = thesis_alone()
     scene = 'environment = "park"\nsun_azimuth_deg = -15.0\nsun_elevation_deg = 42.0'
-    assert scene in text
-    (tmp_path / "study.toml").write_text(text.replace(scene, 'environment = "lobby.exr"'))
+    assert scene in thesis_text
+    (tmp_path / "study.toml").write_text(thesis_text.replace(scene, 'environment = "lobby.exr"'))
     (tmp_path / "lobby.exr").write_bytes(b"no picture")
     said = fails_with(capsys, command, str(tmp_path / "study.toml"))
     assert said.endswith("lobby.exr: not an OpenEXR file, whatever its name says")
 
 
 def test_every_fault_of_a_study_file_is_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    thesis_text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = thesis_alone()
     faulty = tmp_path / "faulty.toml"
     faulty.write_text(
-        text.replace('reflection = "high"', 'reflection = "hihg"').replace("fps = 30", "fps = 0")
+        thesis_text.replace('reflection = "high"', 'reflection = "hihg"').replace(
+            "fps = 30", "fps = 0"
+        )
     )
     assert main(["check", str(faulty)]) == 1
     lines = capsys.readouterr().err.splitlines()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
+from collections.abc import Callable
 from pathlib import Path
 
 import moderngl
@@ -33,8 +33,25 @@ def photo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.fixture
+def study_with(
+    thesis_with: Callable[[str, str], str], tmp_path: Path
+) -> Callable[[str], StudyDefinition]:
+    """What reads the thesis's study with other eyes from a file."""
+
+    def read(eye: str) -> StudyDefinition:
+        path = tmp_path / "study.toml"
+        path.write_text(thesis_with("eye", eye), encoding="utf-8")
+        return read_definition(path)
+
+    return read
+
+
 def test_a_photograph_becomes_an_iris_that_stills_and_studies_name(
-    photo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    photo: Path,
+    study_with: Callable[[str], StudyDefinition],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     folder = tmp_path / "anna"
     assert main(["iris", str(photo), "--out", str(folder), "--distance", "400"]) == 0
@@ -54,22 +71,15 @@ def test_a_photograph_becomes_an_iris_that_stills_and_studies_name(
     np.testing.assert_allclose(drawn, seen, atol=14.0)
     named = iris(str(folder / "iris.npz"))
     assert named == {"iris_file": str(folder / "iris.npz"), "iris_sha256": found["iris_sha256"]}
-    first = _study(tmp_path, 'iris_file = "anna/iris.npz"').wanted_specs()[0].spec
+    first = study_with('iris_file = "anna/iris.npz"').wanted_specs()[0].spec
     assert {name: getattr(first, name) for name in named} == named
 
 
-def _study(folder: Path, keys: str) -> StudyDefinition:
-    text = Path("study/design/definitions/thesis.toml").read_text(encoding="utf-8")
-    text = re.sub(r"(?m)^translations = .*\n", "", text)  # they lie elsewhere
-    before, after = text.split("[eye]")
-    kept = after.split("\n[", 1)[1]
-    (folder / "study.toml").write_text(f"{before}[eye]\n{keys}\n\n[{kept}", encoding="utf-8")
-    return read_definition(folder / "study.toml")
-
-
-def test_a_study_without_its_iris_file_is_refused_with_its_place(tmp_path: Path) -> None:
+def test_a_study_without_its_iris_file_is_refused_with_its_place(
+    study_with: Callable[[str], StudyDefinition], tmp_path: Path
+) -> None:
     with pytest.raises(DefinitionError) as caught:
-        _study(tmp_path, 'iris_file = "gone.npz"\niris_colour = "brown"')
+        study_with('iris_file = "gone.npz"\niris_colour = "brown"')
     message = str(caught.value)
     assert f"eye.iris_file: {tmp_path}/gone.npz: No such file or directory" in message
     assert "eye.iris_colour: gone.npz brings its own colours; leave this out" in message

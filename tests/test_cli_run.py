@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import socket
 import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -62,34 +61,10 @@ class Running:
                 time.sleep(0.1)
 
 
-ONE_CLIP = """
-[[clips]]
-id = "1"
-distance = "far"
-left = "low"
-right = "medium"
-
-"""
-
-
 @pytest.fixture
-def tiny_study(tmp_path: Path) -> Path:
-    """Return a study file like the thesis's, with one clip of one small frame."""
-    text = (ROOT / "study/design/definitions/thesis.toml").read_text(encoding="utf-8")
-    for pattern, value in (
-        (r"^translations = .*\n", ""),  # they lie elsewhere
-        (r"^sizes = .*$", 'sizes = ["64x64"]'),
-        (r"^duration_s = .*$", "duration_s = 0.1"),
-        (r"^fps = .*$", "fps = 10"),
-        (r"^crowd = .*$", "crowd = 0"),
-        (r"^directions = .*$", 'directions = ["rightward"]'),
-        (r"^\[\[practice\]\](.|\n)*?(?=^\[consent\])", ONE_CLIP),
-    ):
-        text, count = re.subn(pattern, value, text, flags=re.MULTILINE)
-        assert count == 1, pattern
-    path = tmp_path / "tiny.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
+def tiny_study(write_short_study: Callable[..., Path]) -> Path:
+    """A study of one clip of one small frame."""
+    return write_short_study(("1", "far", "low", "medium"), size="64x64", duration_s=0.1)
 
 
 @contextmanager

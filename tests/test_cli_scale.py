@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import re
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from threading import Timer
 
@@ -22,30 +22,13 @@ from study.settings import Settings
 
 ROOT = Path(__file__).parent.parent
 LIMIT_S = 300.0  # for a busy machine; building a scene takes seconds
-CLIPS = "".join(
-    f'[[clips]]\nid = "{right}"\ndistance = "near"\nleft = "low"\nright = "{right}"\n\n'
-    for right in ("low", "medium", "high")
-)
 
 
 @pytest.fixture
-def small_study(tmp_path: Path) -> Path:
-    """Return a study file like the thesis's, with three clips of two small frames."""
-    text = (ROOT / "study/design/definitions/thesis.toml").read_text(encoding="utf-8")
-    for pattern, value in (
-        (r"^translations = .*\n", ""),  # they lie elsewhere
-        (r"^sizes = .*$", 'sizes = ["96x64"]'),
-        (r"^duration_s = .*$", "duration_s = 0.2"),
-        (r"^fps = .*$", "fps = 10"),
-        (r"^crowd = .*$", "crowd = 0"),
-        (r"^directions = .*$", 'directions = ["rightward"]'),
-        (r"^\[\[practice\]\](.|\n)*?(?=^\[consent\])", CLIPS),
-    ):
-        text, count = re.subn(pattern, value, text, flags=re.MULTILINE)
-        assert count == 1, pattern
-    path = tmp_path / "small.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
+def small_study(write_short_study: Callable[..., Path]) -> Path:
+    """A study of three clips of two small frames."""
+    clips = [(right, "near", "low", right) for right in ("low", "medium", "high")]
+    return write_short_study(*clips, size="96x64", duration_s=0.2)
 
 
 def hashes(folder: Path) -> dict[str, tuple[str, str]]:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,7 +18,6 @@ import pytest
 
 from study.data import collection, export
 from study.data.studies import Study
-from study.design import definition as design
 from study.load.person import Person
 from study.load.proxy import Proxy
 from study.load.site import LoadedSite
@@ -27,7 +25,6 @@ from study.load.trouble import CUTS, Killer, Trouble
 from study.load.visit import Acknowledged
 from study.load.wire import Wire
 
-THESIS = Path(design.__file__).parent / "definitions" / "thesis.toml"
 STEPS = ("page", "consent", "form", "play", "answer", "questionnaire")
 PATIENCE_S = 900  # a loaded machine is no failure
 
@@ -55,10 +52,9 @@ class Outcome:
 
 
 @pytest.fixture
-def site(tmp_path: Path, database_url: str) -> Iterator[LoadedSite]:
+def site(thesis_text: str, tmp_path: Path, database_url: str) -> Iterator[LoadedSite]:
     """A site with the thesis's study, cut to its practice clip and its first two trials."""
-    text = re.sub(r"(?m)^translations = .*$", "", THESIS.read_text())
-    head, *clips = text.split("[[clips]]\n")
+    head, *clips = thesis_text.split("[[clips]]\n")
     last, rest = clips[-1].split("\n[consent]", 1)
     study = tmp_path / "small.toml"
     study.write_text("[[clips]]\n".join([head, *clips[:1], last]) + "\n[consent]" + rest)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,21 +14,25 @@ from study.design.definition import StudyDefinition, parse_definition, read_defi
 from study.design.faults import DefinitionError
 from study.design.files import find_files
 
-
-def written(folder: Path, scene: dict[str, Any]) -> StudyDefinition:
-    """Read the thesis's study with another [scene], as a file in a folder."""
-    folder.mkdir(exist_ok=True)
-    text = Path("study/design/definitions/thesis.toml").read_text(encoding="utf-8")
-    text = re.sub(r"^translations = .*\n", "", text, flags=re.MULTILINE)  # they lie elsewhere
-    before, after = text.split("[scene]")
-    keys = "\n".join(f"{key} = {json.dumps(value)}" for key, value in scene.items())
-    (folder / "study.toml").write_text(
-        f"{before}[scene]\n{keys}\n\n[order]{after.split('[order]')[1]}", encoding="utf-8"
-    )
-    return read_definition(folder / "study.toml")
+Written = Callable[[Path, dict[str, Any]], StudyDefinition]
 
 
-def test_a_picture_lies_beside_the_study_file_and_names_the_clips(tmp_path: Path) -> None:
+@pytest.fixture
+def written(thesis_with: Callable[[str, str], str]) -> Written:
+    """What reads the thesis's study with another [scene] from a file in a folder."""
+
+    def read(folder: Path, scene: dict[str, Any]) -> StudyDefinition:
+        folder.mkdir(exist_ok=True)
+        keys = "\n".join(f"{key} = {json.dumps(value)}" for key, value in scene.items())
+        (folder / "study.toml").write_text(thesis_with("scene", keys), encoding="utf-8")
+        return read_definition(folder / "study.toml")
+
+    return read
+
+
+def test_a_picture_lies_beside_the_study_file_and_names_the_clips(
+    written: Written, tmp_path: Path
+) -> None:
     for name, contents in (("a", b"one"), ("b", b"one"), ("c", b"two")):
         (tmp_path / name).mkdir()
         (tmp_path / name / "lobby.exr").write_bytes(contents)
@@ -45,7 +49,9 @@ def test_a_picture_lies_beside_the_study_file_and_names_the_clips(tmp_path: Path
     assert a.definition_hash == b.definition_hash != c.definition_hash
 
 
-def test_a_definition_with_a_picture_survives_the_way_through_json(tmp_path: Path) -> None:
+def test_a_definition_with_a_picture_survives_the_way_through_json(
+    written: Written, tmp_path: Path
+) -> None:
     (tmp_path / "lobby.hdr").write_bytes(b"x")
     definition = written(tmp_path, {"environment": "lobby.hdr"})
     assert parse_definition(json.loads(definition.to_json())) == definition
@@ -72,7 +78,7 @@ def test_a_definition_with_a_picture_survives_the_way_through_json(tmp_path: Pat
     ],
 )
 def test_faults_of_pictures_stand_with_their_place(
-    tmp_path: Path, scene: dict[str, Any], words: str
+    written: Written, tmp_path: Path, scene: dict[str, Any], words: str
 ) -> None:
     (tmp_path / "lobby.exr").write_bytes(b"x")
     with pytest.raises(DefinitionError) as caught:
