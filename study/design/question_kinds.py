@@ -169,16 +169,7 @@ Asked = (
     | NumberQuestion
     | TextQuestion
 )
-Question = Annotated[
-    ChoiceQuestion
-    | MultipleQuestion
-    | ScaleQuestion
-    | AnalogueQuestion
-    | NumberQuestion
-    | TextQuestion
-    | MatrixQuestion,
-    Field(discriminator="kind"),
-]
+Question = Annotated[Asked | MatrixQuestion, Field(discriminator="kind")]
 
 
 def each_asked(questions: Iterable[Question]) -> tuple[Asked, ...]:

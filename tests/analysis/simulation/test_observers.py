@@ -25,18 +25,9 @@ class Simulated:
 
 
 @pytest.fixture(scope="module")
-def simulated() -> Simulated:
+def simulated(thesis_clips: dict[str, Stimulus]) -> Simulated:
     rng = np.random.default_rng(53)
-    pairs = (
-        ("macroscopic", "medium", "low"),
-        ("macroscopic", "high", "ultra"),
-        ("macroscopic", "high", "medium"),
-        ("near", "low", "ultra"),
-        ("near", "low", "medium"),
-        ("near", "ultra", "low"),
-        ("far", "ultra", "low"),
-    )
-    clips = [Stimulus(d, POPULATION.iris_px[d], left, right) for d, left, right in pairs]
+    clips = list(thesis_clips.values())
     ratings = np.full((STUDIES, 10, 7, 2), np.nan)
     comparison = np.full((STUDIES, 10, 7), np.nan)
     noticed: list[list[str | None]] = [[] for _ in clips]

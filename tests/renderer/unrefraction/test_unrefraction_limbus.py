@@ -21,29 +21,16 @@ from renderer.unrefraction.limbus import EDGE_MM, Limbus, half_way_mm, mean_edge
 from renderer.unrefraction.limbus_fit import SCLERA, SECTORS, find_limbus
 from renderer.unrefraction.photograph import decode_srgb
 from renderer.unrefraction.portrait import developed, portrait
-from renderer.unrefraction.pose import TELECENTRIC_MM, Pose
+from renderer.unrefraction.pose import Pose
 from renderer.unrefraction.texels import Texels, place_texels, sample
 
 BLUE, PALE, DARK = (0.10, 0.12, 0.20), (0.22, 0.20, 0.18), (0.02, 0.015, 0.01)
 WHITE = np.array([0.6, 0.55, 0.5])
-POSE = Pose(
-    x=300.0,
-    y=280.0,
-    px_per_mm=40.0,
-    yaw=0.0,
-    pitch=0.0,
-    roll=0.0,
-    distance_mm=TELECENTRIC_MM,
-    pupil_mm=2.0,
-    pupil_x_mm=0.0,
-    pupil_y_mm=0.0,
-    height_ratio=0.95,
-)
 
 
 @pytest.fixture(scope="module")
-def texels() -> Texels:
-    return place_texels(POSE, 256)
+def texels(level_pose: Pose) -> Texels:
+    return place_texels(level_pose, 256)
 
 
 def shown(texels: Texels, limbus: Limbus, iris: tuple[float, ...]) -> np.ndarray:
@@ -73,13 +60,13 @@ def test_eyes_are_drawn_with_the_limbus_that_is_looked_for() -> None:
     assert f"{law.WANDER_WIDTH} * wander" in source
 
 
-def test_the_law_is_the_drawn_limbus(gl: moderngl.Context) -> None:
+def test_the_law_is_the_drawn_limbus(gl: moderngl.Context, level_pose: Pose) -> None:
     """Measured on a rendered eye whose place is known: edge, ring and the white's hue."""
     spec = ClipSpec(
         left=Detail.uniform("ultra"), right=Detail.uniform("off"), iris_colour="dark-brown"
     )
     photo = developed(portrait(gl, spec, size_px=500))
-    pose = dataclasses.replace(POSE, x=249.5, y=249.5, px_per_mm=500 / 14, distance_mm=400.0)
+    pose = dataclasses.replace(level_pose, x=249.5, y=249.5, px_per_mm=500 / 14, distance_mm=400.0)
     texels = place_texels(pose, 512)
     linear = decode_srgb(photo / 255.0).astype(np.float32)
     limbus, white = find_limbus(sample(linear, texels), texels)

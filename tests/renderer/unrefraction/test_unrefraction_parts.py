@@ -27,19 +27,6 @@ from renderer.unrefraction.tissue import (
 )
 
 SIZE = 256
-LEVEL = Pose(
-    x=300.0,
-    y=280.0,
-    px_per_mm=40.0,
-    yaw=0.0,
-    pitch=0.0,
-    roll=0.0,
-    distance_mm=TELECENTRIC_MM,
-    pupil_mm=2.0,
-    pupil_x_mm=0.0,
-    pupil_y_mm=0.0,
-    height_ratio=0.95,
-)
 
 
 def test_an_ellipse_is_fitted_exactly_and_outliers_are_left_out() -> None:
@@ -60,8 +47,10 @@ def test_an_ellipse_is_fitted_exactly_and_outliers_are_left_out() -> None:
 
 
 @pytest.mark.parametrize("yaw_deg", [0.0, 20.0, 33.0])
-def test_the_entry_point_is_where_the_camera_sees_the_iris_point(yaw_deg: float) -> None:
-    pose = dataclasses.replace(LEVEL, yaw=math.radians(yaw_deg), distance_mm=150.0)
+def test_the_entry_point_is_where_the_camera_sees_the_iris_point(
+    level_pose: Pose, yaw_deg: float
+) -> None:
+    pose = dataclasses.replace(level_pose, yaw=math.radians(yaw_deg), distance_mm=150.0)
     line = np.linspace(-5.0, 5.0, 21)
     points = np.stack(np.meshgrid(line, line), axis=-1)
     points = points[np.hypot(points[..., 0], points[..., 1]) < 5.0]
@@ -69,16 +58,18 @@ def test_the_entry_point_is_where_the_camera_sees_the_iris_point(yaw_deg: float)
     np.testing.assert_allclose(seen_through(entry[..., :2], pose.camera_mm), points, atol=2e-4)
 
 
-def test_the_cornea_magnifies_the_pupil() -> None:
+def test_the_cornea_magnifies_the_pupil(level_pose: Pose) -> None:
     """4.00 mm look 4.44 mm wide off the axis: renderer/eye/test_eyes.py says the same of GL."""
-    wide = np.ptp(LEVEL.pupil()[:, 0]) / LEVEL.px_per_mm
+    wide = np.ptp(level_pose.pupil()[:, 0]) / level_pose.px_per_mm
     assert wide == pytest.approx(4.44 * (1 + 0.005 / 2.0), abs=0.02)
 
 
 @pytest.mark.parametrize(("yaw_deg", "pitch_deg"), [(0, 0), (20, 0), (-14, 14), (5, -28)])
-def test_a_pose_is_found_from_its_own_edges(yaw_deg: float, pitch_deg: float) -> None:
+def test_a_pose_is_found_from_its_own_edges(
+    level_pose: Pose, yaw_deg: float, pitch_deg: float
+) -> None:
     truth = dataclasses.replace(
-        LEVEL, yaw=math.radians(yaw_deg), pitch=math.radians(pitch_deg), pupil_mm=1.6
+        level_pose, yaw=math.radians(yaw_deg), pitch=math.radians(pitch_deg), pupil_mm=1.6
     )
     edges = Edges(*(_edge(points) for points in (truth.pupil(), truth.limbus())))
     found = find_pose(edges, turn=0.0, limbus_mm=11.7, distance_mm=TELECENTRIC_MM)
@@ -95,14 +86,16 @@ def _edge(points: np.ndarray) -> Edge:
 
 
 @pytest.fixture(scope="module")
-def texels() -> Texels:
-    return place_texels(dataclasses.replace(LEVEL, pupil_mm=3.0), SIZE)
+def texels(level_pose: Pose) -> Texels:
+    return place_texels(dataclasses.replace(level_pose, pupil_mm=3.0), SIZE)
 
 
-def test_texels_at_the_maps_pupil_lie_on_the_photographs_pupil(texels: Texels) -> None:
+def test_texels_at_the_maps_pupil_lie_on_the_photographs_pupil(
+    texels: Texels, level_pose: Pose
+) -> None:
     edge = np.abs(texels.radius_mm - PUPIL_RADIUS_MM) < 0.03
     apparent = np.hypot(texels.x_px - 300.0, texels.y_px - 280.0)[edge] / 40.0
-    entry = LEVEL.entry(np.array([3.0, 0.0]))[0]
+    entry = level_pose.entry(np.array([3.0, 0.0]))[0]
     assert apparent.mean() == pytest.approx(entry, abs=0.02)
     upper = texels.y_px[np.abs(texels.angle - 1.57) < 0.1].mean()
     assert upper < 280.0, "the maps' y points up, the picture's down"
