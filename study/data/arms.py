@@ -18,7 +18,7 @@ from study.data.database import Database
 from study.data.participants import IDLE, Participant, locked, record_of
 from study.data.readiness import Screen, fitting_sizes, ready_arms
 from study.data.schema import ParticipantRow, StudyRow
-from study.data.studies import Study, by_id
+from study.data.studies import Study, by_id, gate
 from study.design.arms import Arm, all_arms, assign_arm, assign_row
 from study.design.definition import StudyDefinition
 from study.design.parts import read_size
@@ -45,7 +45,7 @@ def assign(
     fitting = fitting_sizes(definition, screen)
     with db.writing() as session:
         # Two who come at once must not both take the last free place: the study's row is the gate.
-        session.get_one(StudyRow, participant.study_id, with_for_update=True)
+        gate(session, StudyRow.id == participant.study_id)
         row = locked(session, participant)
         if row.size is not None and (row.begun_at or read_size(row.size) in fitting):
             return record_of(row)

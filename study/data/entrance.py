@@ -20,7 +20,7 @@ from study.data.enrolment import enrol
 from study.data.participants import Participant, record_of, token_hash
 from study.data.refusals import FormUsedError, LinkUsedError
 from study.data.schema import LinkRow, ParticipantRow, StudyRow
-from study.data.studies import Study
+from study.data.studies import Study, gate
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,7 @@ def enter(
     """
     with db.writing() as session:
         # All versions of the study: whoever began one is known in the next.
-        session.scalars(
-            select(StudyRow.id).where(StudyRow.key == study.key).with_for_update()
-        ).all()
+        gate(session, StudyRow.key == study.key)
         opened = _unused_or_mine(session, link)
         found = _known(session, person_key, opened)
         if found is not None:

@@ -51,6 +51,9 @@ def withdraw(db: Database, participant: Participant) -> None:
     with db.writing() as session:
         if db.engine.dialect.name == "sqlite":  # zeroes in the place of deleted rows, at once
             session.connection().exec_driver_sql("PRAGMA secure_delete = ON")
+        # In the order of whoever comes in by a link: first it, then the person.
+        mine = LinkRow.participant_id == participant.id
+        session.execute(select(LinkRow.id).where(mine).with_for_update()).all()
         row = session.get(ParticipantRow, participant.id, with_for_update=True)
         if row is None or row.public_id != participant.public_id:
             return
@@ -68,7 +71,6 @@ def withdraw(db: Database, participant: Participant) -> None:
             session.execute(delete(table).where(table.participant_id == row.id))
         session.delete(erasure)
         figures.forget(session, row.study_id)  # somebody is drawn in them who is gone
-        mine = LinkRow.participant_id == row.id
         session.execute(update(LinkRow).where(mine).values(participant_id=None))
         session.delete(row)
         session.add(withdrawal)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Any, Final
 
-from sqlalchemy import case, delete
+from sqlalchemy import ColumnElement, Delete, case, delete, select
 from sqlalchemy.dialects import postgresql, sqlite
 
 from study.data.database import Database
@@ -47,12 +47,20 @@ def count(db: Database, limit: Limit, who: str, *, times: int = 1) -> None:
         },
     ).returning(LimitRow.count, LimitRow.since)
     with db.writing() as session:
-        session.execute(
-            delete(LimitRow).where(LimitRow.kind == limit.kind, is_over, LimitRow.who != who)
-        )
         total, since = session.execute(query).one()
+        session.execute(_forgetting(limit, is_over, who))
     if total > limit.most:
         raise TooManyError(max(1, math.ceil((since + limit.per - now).total_seconds())))
+
+
+def _forgetting(limit: Limit, is_over: ColumnElement[bool], who: str) -> Delete:
+    """Forget those whose time is over, but for rows in use: two who forget each other would wait
+    for each other, and PostgreSQL would break off one of them.
+    """
+    old = select(LimitRow.who).where(LimitRow.kind == limit.kind, is_over, LimitRow.who != who)
+    return delete(LimitRow).where(
+        LimitRow.kind == limit.kind, LimitRow.who.in_(old.with_for_update(skip_locked=True))
+    )
 
 
 def _insert(db: Database) -> Any:

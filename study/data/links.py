@@ -10,7 +10,7 @@ from sqlalchemy import func, select
 from study.data.database import Database
 from study.data.participants import Participant, record_of, token_hash
 from study.data.schema import LinkRow, ParticipantRow, StudyRow
-from study.data.studies import Study
+from study.data.studies import Study, gate
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class LinkCounts:
 def make(db: Database, study: Study, count: int) -> list[NewLink]:
     """Make links, numbered on from those that the study has."""
     with db.writing() as session:
-        session.get_one(StudyRow, study.id, with_for_update=True)
+        gate(session, StudyRow.id == study.id)
         last = session.scalar(select(func.max(LinkRow.number)).where(LinkRow.study_id == study.id))
         made = [
             NewLink(number, secrets.token_urlsafe(24))

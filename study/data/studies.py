@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass, replace
 from typing import Final
 
-from sqlalchemy import func, select
+from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
@@ -126,6 +126,16 @@ def by_id(db: Database, study_id: int) -> Study:
         found = study_of(db, row)
     db.recent[study_id] = (time.monotonic(), found)
     return found
+
+
+def gate(session: Session, *which: ColumnElement[bool]) -> None:
+    """Let one transaction after the other pass that changes who takes part in these studies.
+
+    Those who only refer to them go on: whoever holds a participant's row and waited here would wait
+    for ever for somebody who has passed and waits for that row (PostgreSQL, FOR NO KEY UPDATE).
+    """
+    rows = select(StudyRow.id).where(*which).order_by(StudyRow.id)
+    session.scalars(rows.with_for_update(key_share=True)).all()
 
 
 def study_of(db: Database, row: StudyRow) -> Study:
