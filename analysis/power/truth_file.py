@@ -36,7 +36,7 @@ def read_truth(path: Path, clips: Iterable[Stimulus], margins: Margins) -> Assum
     """Read a truth; raises ValueError with every fault, OSError where there is no such file."""
     listed = list(clips)
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ValueError(f"{path.name}: no TOML: {error}") from None
     base = data.pop("base", BASES[0])

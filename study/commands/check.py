@@ -50,9 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the summary and the audit; a faulty file ends in DefinitionError."""
-    from study.design.definition import read_definition
-
-    definition = read_definition(options.study)
+    definition = _read(options.study, options.translation)
     check_pictures(definition)
     lines: Iterable[str]
     if options.translation is not None:
@@ -67,6 +65,19 @@ def run(options: argparse.Namespace) -> int:
     for line in lines:
         print(line)
     return 0
+
+
+def _read(study: str, language: str | None) -> StudyDefinition:
+    """Read the study; a translation that is asked for may still be absent or have faults."""
+    from study.design.definition import read_definition
+    from study.design.faults import DefinitionError
+
+    try:
+        return read_definition(study)
+    except DefinitionError:
+        if language is None:
+            raise
+        return read_definition(study, without_translation=language)
 
 
 def order_lines(definition: StudyDefinition, code: str) -> Iterator[str]:

@@ -45,9 +45,12 @@ def built_in_names() -> list[str]:
     )
 
 
-def read_definition(name_or_path: str | Path) -> StudyDefinition:
+def read_definition(
+    name_or_path: str | Path, *, without_translation: str | None = None
+) -> StudyDefinition:
     """Read a built-in study by name or any study by the path of its file.
 
+    ``without_translation`` is a language whose file is not looked at, for it is yet to be written.
     Raises DefinitionError with every fault of the file.
     """
     text, source = _read_text(str(name_or_path))
@@ -56,6 +59,8 @@ def read_definition(name_or_path: str | Path) -> StudyDefinition:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise DefinitionError(source, [Fault("", f"not a TOML file: {error}")]) from None
+    if isinstance(named := data.get("translations"), list) and without_translation in named:
+        data["translations"] = [language for language in named if language != without_translation]
     found, absent = find_files(data, folder)
     found, untranslated = find_translations(found, _beside(str(name_or_path)))
     return parse_definition(found, source=source, faults=[*absent, *untranslated])
@@ -134,7 +139,8 @@ def _read_text(name_or_path: str) -> tuple[str, str]:
         return resource.read_text(encoding="utf-8"), resource.name
     path = Path(name_or_path)
     try:
-        return path.read_text(encoding="utf-8"), path.name
+        # Some editors put a mark of their own before UTF-8 text.
+        return path.read_text(encoding="utf-8-sig"), path.name
     except UnicodeDecodeError as error:
         raise DefinitionError(path.name, [Fault("", f"not UTF-8 text: {error}")]) from None
     except OSError as error:

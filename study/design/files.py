@@ -88,7 +88,7 @@ def _with_policy(named: object, folder: Path) -> tuple[dict[str, Any], list[Faul
         return {}, []
     path = (folder / named).absolute()
     try:
-        return {"lod_policy": json.loads(path.read_text(encoding="utf-8"))}, []
+        return {"lod_policy": json.loads(path.read_text(encoding="utf-8-sig"))}, []
     except OSError as error:
         fault = f"{path}: {error.strerror}"
     except ValueError as error:

@@ -99,9 +99,10 @@ def find_translations(data: Data, path: Path) -> tuple[dict[str, Any], list[Faul
     for index, language in enumerate(named):
         beside = path.with_name(f"{path.stem}.{language}.toml")
         try:
-            found[str(language)] = tomllib.loads(beside.read_text(encoding="utf-8"))
+            found[str(language)] = tomllib.loads(beside.read_text(encoding="utf-8-sig"))
         except OSError as error:
-            faults.append(Fault(f"translations.{index}", f"{beside}: {error.strerror}"))
+            hint = f"ocularist check {path} --translation {language} writes one to fill in"
+            faults.append(Fault(f"translations.{index}", f"{beside}: {error.strerror}; {hint}"))
         except ValueError as error:
             faults.append(Fault(f"translations.{index}", f"{beside}: not a TOML file: {error}"))
     return {**data, "translations": found}, faults

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib.resources import files
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -196,6 +197,16 @@ def test_a_file_that_is_no_text_says_so(tmp_path: Path) -> None:
     file.write_bytes(b"\xff\xfe")
     with pytest.raises(DefinitionError, match=r"^bad\.toml: not UTF-8 text"):
         read_definition(file)
+
+
+def test_a_byte_order_mark_is_no_fault(tmp_path: Path) -> None:
+    study = tmp_path / "study.toml"
+    folder = Path(str(files("study.design"))) / "definitions"
+    for name in ("thesis", "thesis.ar"):
+        text = (folder / f"{name}.toml").read_text(encoding="utf-8")
+        target = study if name == "thesis" else study.with_name("study.ar.toml")
+        target.write_text(text, encoding="utf-8-sig")
+    assert read_definition(study).definition_hash == read_definition("thesis").definition_hash
 
 
 def test_the_cubes_size_reaches_the_clips_and_leaves_old_definitions_their_hash(

@@ -168,3 +168,21 @@ def test_check_writes_the_file_to_translate(capsys: pytest.CaptureFixture[str]) 
     assert main(["check", "thesis", "--translation", "ar"]) == 0
     written = tomllib.loads(capsys.readouterr().out)
     assert written["thanks"]["title"] == "شكرًا لك"
+
+
+def test_check_writes_it_although_the_study_names_it_already(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = Path(__file__).parents[2] / "study" / "design" / "definitions"
+    text = (folder / "thesis.toml").read_text(encoding="utf-8")
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        text.replace('translations = ["ar"]', 'translations = ["fr"]'), encoding="utf-8"
+    )
+    beside = tmp_path / "mine.fr.toml"
+    with pytest.raises(DefinitionError, match=rf"ocularist check {file} --translation fr writes"):
+        read_definition(file)
+    beside.touch()  # as a shell does before it starts the command
+    assert main(["check", str(file), "--translation", "fr"]) == 0
+    beside.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert read_definition(file).in_language("fr").title == "How real do these eyes look?"
