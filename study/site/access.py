@@ -52,13 +52,18 @@ class Visitor:
     csrf: str
     outbox: str
     study: Study
-    resume_url: str
     is_idle: bool
+    request: Request
 
     @property
     def name(self) -> str:
         """The pseudonym: names this browser's outbox."""
         return self.participant.public_id
+
+    @property
+    def resume_url(self) -> str:
+        """The link with which they come back at another browser; none for a signed name."""
+        return f"{self.request.base_url}resume/{quote(self.token)}" if self.token else ""
 
     @property
     def is_simulated(self) -> bool:
@@ -99,8 +104,8 @@ def as_visitor(request: Request, here: Here, participant: Participant, token: st
         csrf=csrf_token(here.secret, token),
         outbox=sign_outbox(here.secret, participant.public_id),
         study=studies.by_id(here.db, participant.study_id).spoken(participant.language),
-        resume_url=f"{request.base_url}resume/{quote(token)}" if token else "",
         is_idle=here.db.now() - participant.last_seen_at > participants.IDLE,
+        request=request,
     )
 
 

@@ -8,7 +8,7 @@ from study.data.participants import IDLE
 from study.data.studies import Study
 from study.site.access import Visitor
 from study.site.language import language_of
-from study.texts import catalogue, tongue
+from study.texts import Catalogue, catalogue, tongue
 
 
 def shared(
@@ -19,7 +19,7 @@ def shared(
     ``text`` is the catalogue in the participant's language, for a visitor who takes part; others
     get one of their ``wishes``. ``page`` names the page and the script that serves it.
     """
-    language = language_of(study, (visitor.participant.language,) if visitor else wishes)
+    language = spoken_with(study, visitor, wishes)
     words = catalogue(language)
     return {
         "page": page,
@@ -34,3 +34,13 @@ def shared(
         "release_s": int(IDLE.total_seconds()),
         "resume_url": visitor.resume_url if visitor else "",
     }
+
+
+def words_of(study: Study, visitor: Visitor) -> Catalogue:
+    """Return the catalogue of somebody who takes part."""
+    return catalogue(spoken_with(study, visitor))
+
+
+def spoken_with(study: Study, visitor: Visitor | None, wishes: tuple[str, ...] = ()) -> str:
+    """Return the language of a page."""
+    return language_of(study, (visitor.participant.language,) if visitor else wishes)

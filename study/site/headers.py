@@ -5,6 +5,7 @@ Plain ASGI: it knows nothing of pages, people or data.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final
 from urllib.parse import urlsplit
 
@@ -55,9 +56,7 @@ class SecureHeaders:
 
         async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
-                given = message.setdefault("headers", [])
-                names = {name.lower() for name, _ in given}
-                message["headers"] = [*given, *(pair for pair in _RAW if pair[0] not in names)]
+                message["headers"] = completed(message.get("headers", ()))
             await send(message)
 
         if scope["method"] not in SAFE_METHODS and is_foreign(Headers(scope=scope)):
@@ -65,6 +64,13 @@ class SecureHeaders:
             await refusal(scope, receive, send_with_headers)
             return
         await self.app(scope, limited(receive), send_with_headers)
+
+
+def completed(given: Iterable[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    """Return an answer's headers with those of HEADERS that it lacks."""
+    headers = list(given)
+    names = {name.lower() for name, _ in headers}
+    return headers + [pair for pair in _RAW if pair[0] not in names]
 
 
 def limited(receive: Receive) -> Receive:

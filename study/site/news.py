@@ -7,13 +7,11 @@ nothing. "ok" is said only when the entry is on the disk.
 from __future__ import annotations
 
 from functools import partial
-from typing import Annotated, Any, Final, Literal
+from typing import Any
 
 from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
-from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from study.data import answers, events, participants, views
 from study.data.errands import Errand, Make
@@ -23,6 +21,7 @@ from study.design.questions import AnswerError, read_answers
 from study.site.about import DRAFTED, questions_about
 from study.site.access import as_visitor
 from study.site.asker import Asker, by_outbox, locked, study_of
+from study.site.entries import BODY, AnswerEntry, AnyEntry, PlayEntry, ProblemEntry, read_entry
 from study.site.language import language_of
 from study.site.media import to_expect
 from study.site.place import Place, place_in
@@ -31,69 +30,13 @@ from study.texts import catalogue
 router = APIRouter()
 
 
-# Plain values, and intervals as pairs of times in ms.
-Whole = Annotated[int, Field(ge=-(2**53), le=2**53)]
-Real = Annotated[float, Field(ge=-1e15, le=1e15, allow_inf_nan=False)]
-Interval = tuple[Real, Real]
-Fact = bool | Whole | Real | Annotated[str, Field(max_length=300)] | list[Interval] | None
-
-Position = Annotated[int, Field(ge=0, le=100_000)]
-
-
-class Entry(BaseModel):
-    """What all entries have; ``at`` is the browser's clock, for the record."""
-
-    model_config = ConfigDict(extra="forbid")
-    key: Annotated[str, Field(min_length=1, max_length=64)]
-    at: Annotated[str, Field(max_length=40)] = ""
-
-
-# What was ticked of several: their values.
-Ticked = Annotated[list[Annotated[str, Field(max_length=60)]], Field(max_length=200)]
-
-
-class AnswerEntry(Entry):
-    """An answer to one question of a trial; without a trial, of the page about the participant."""
-
-    kind: Literal["answer"]
-    position: Position | None = None
-    question: Annotated[str, Field(max_length=60)]
-    value: Annotated[str, Field(max_length=20_000)] | Ticked
-
-
-class PlayEntry(Entry):
-    """One play of a trial's clip, finished or not."""
-
-    kind: Literal["play"]
-    position: Position
-    play: Annotated[dict[str, Fact], Field(max_length=100)]
-
-
-class ProblemEntry(Entry):
-    """Something that stopped the participant, by its code."""
-
-    kind: Literal["problem"]
-    position: Position | None = None
-    code: Annotated[str, Field(max_length=200)]
-
-
-AnyEntry = Annotated[AnswerEntry | PlayEntry | ProblemEntry, Field(discriminator="kind")]
-ENTRY: Final[TypeAdapter[AnyEntry]] = TypeAdapter(AnyEntry)
-# Read here and not by the framework, at a third of its price; this is what it would have declared.
-_PLACE: Final = "#/paths/~1events/post/requestBody/content/application~1json/schema/$defs/{model}"
-BODY: Final = {
-    "content": {"application/json": {"schema": ENTRY.json_schema(ref_template=_PLACE)}},
-    "required": True,
-}
-
-
 @router.post("/events", openapi_extra={"requestBody": BODY})
 async def report(request: Request) -> JSONResponse:
     """Store one entry, and say so only once it is stored: by the entry's own key.
 
     An answer that cannot be stored is refused kindly: the form says why when it is sent.
     """
-    here, entry = place_in(request), await _entry(request)
+    here, entry = place_in(request), await read_entry(request)
     sender = partial(_sender, request, here, by_outbox(request, here))
     try:
         told = await _stored(request, here, entry, sender)
@@ -101,16 +44,6 @@ async def report(request: Request) -> JSONResponse:
         await run_in_threadpool(here.pace.settle, full.name)
         told = await _stored(request, here, entry, partial(sender, is_counted=True))
     return JSONResponse({**told, "key": entry.key})
-
-
-async def _entry(request: Request) -> AnyEntry:
-    """Read an entry; raises RequestValidationError for anything else."""
-    if not request.headers.get("content-type", "").startswith("application/json"):
-        raise RequestValidationError([])
-    try:
-        return ENTRY.validate_json(await request.body())
-    except ValidationError as error:
-        raise RequestValidationError(error.errors(include_url=False)) from None
 
 
 async def _stored(

@@ -12,6 +12,7 @@ from markupsafe import Markup
 from study.design.definition import StudyDefinition
 from study.design.questions import Question
 from study.site.forms import question_rows
+from study.site.mould import Moulds
 from study.site.time_left import trial_s
 
 MOST: Final = 200
@@ -20,12 +21,13 @@ MOST: Final = 200
 
 @dataclass(frozen=True)
 class Parts:
-    """What every trial's page of a study has: its questions, and how long a trial takes."""
+    """What every trial's page of a study has: its questions, how long a trial takes, its moulds."""
 
     definition: StudyDefinition
     rows: list[list[Question]]
     blank: Markup
     estimate_s: float
+    moulds: Moulds = field(default_factory=Moulds)
 
     def rows_of(self, questions: Sequence[Question]) -> list[list[Question]]:
         """Return a trial's questions in rows: those of every trial, unless it asks others."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import secrets
-from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -11,7 +10,6 @@ from fastapi import APIRouter, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
-from renderer.manifest import ClipRecord
 from study.data import answers, events, jobs, participants, progress
 from study.data.errands import Errand
 from study.data.progress import Step
@@ -22,14 +20,11 @@ from study.design.questions import AnswerError, Question
 from study.site.access import Visitor, as_visitor, check_csrf, redirect, step_url, to_current
 from study.site.asker import Asker, by_cookie, found, locked, study_of
 from study.site.forms import Fields, answers_in, first, read_form
-from study.site.frame import shared
-from study.site.media import clip_url
 from study.site.place import Place, place_in
 from study.site.problems import problem_page
-from study.site.time_left import minutes_left
+from study.site.trial_page import Shown, trial_page
 
 router = APIRouter(default_response_class=HTMLResponse)
-Say = Callable[..., str]
 LONGEST_MS = 24 * 3600 * 1000
 
 
@@ -50,7 +45,7 @@ async def trial(request: Request, position: int) -> Response:
     record = here.clips.record(step.trial.clip_id)
     if record is None:
         return await run_in_threadpool(_missing, request, here, visitor, step.trial)
-    return _trial_page(here, visitor, step, every, record)
+    return trial_page(Shown(here, visitor, step, step.trial, every, record))
 
 
 def _look(
@@ -59,87 +54,6 @@ def _look(
     who = yield from found(request, here, asker)
     stood = yield from progress.standing(who, study_of(here, who).definition)
     return who, stood
-
-
-def _trial_page(
-    here: Place,
-    visitor: Visitor,
-    step: Step,
-    every: tuple[Trial, ...],
-    record: ClipRecord,
-    *,
-    given: Mapping[str, object] | None = None,
-    error: AnswerError | None = None,
-    note: str = "",
-) -> Response:
-    found = step.trial
-    if found is None:
-        return redirect(step_url(step))
-    definition = visitor.study.definition
-    is_last = found.position == every[-1].position
-    frame = shared(visitor.study, visitor, "trial")
-    text = frame["text"]
-    answers_so_far = {**found.answers, **(given or {})}
-    parts = here.parts.of(definition, text)
-    rows = parts.rows_of(_asked_in(definition, found))
-    is_blank = not (answers_so_far or error) and rows is parts.rows
-    return here.page(
-        "participant/trial.html",
-        status=422 if error or note else 200,
-        **frame,
-        heading=_heading(step, text),
-        steps=_steps(every, found),
-        position=found.position,
-        clip=record,
-        clip_url=clip_url(record),
-        next_clips=_to_come(here, every, found),
-        is_practice=found.is_practice,
-        is_watched=found.views >= definition.order.min_views,
-        views_left=max(0, definition.order.min_views - found.views),
-        views_allowed=_views_allowed(definition.order.max_views, found),
-        retries=definition.certificate.retries,
-        code=f"{visitor.name.upper()}-{found.position}",
-        seconds=max(1, round(record.frame_count / record.fps)),
-        minutes_left=minutes_left(definition, every, estimate_s=parts.estimate_s),
-        rows=rows,
-        blank=parts.blank if is_blank else None,
-        answers=answers_so_far,
-        faults=error.said(text) if error else {},
-        note=text(note) if note else "",
-        key=secrets.token_hex(16),
-        button=text("trial.finish" if is_last else "trial.next"),
-    )
-
-
-def _asked_in(definition: StudyDefinition, found: Trial) -> tuple[Question, ...]:
-    return definition.questions_at(found.number, is_practice=found.is_practice)
-
-
-def _views_allowed(most: int | None, found: Trial) -> int | None:
-    """Return how many more plays the study allows, None for any number."""
-    return None if most is None else max(0, most - found.views)
-
-
-def _heading(step: Step, text: Say) -> str:
-    if step.name == "practice" and step.total == 1:
-        return text("trial.practice")
-    key = "trial.practice_number" if step.name == "practice" else "trial.clip_number"
-    return text(key, number=step.number, total=step.total)
-
-
-def _steps(every: tuple[Trial, ...], current: Trial) -> list[str]:
-    """Return the marks of the progress bar: one per trial of the current kind."""
-    alike = [one for one in every if one.is_practice == current.is_practice]
-    return [
-        "now" if one.position == current.position else "done" if one.is_complete else "ahead"
-        for one in alike
-    ]
-
-
-def _to_come(here: Place, every: tuple[Trial, ...], current: Trial) -> list[str]:
-    """Return address and length of the clips that come later, for the preloader."""
-    records = here.clips.records(one.clip_id for one in every if one.position > current.position)
-    return [f"{clip_url(record)} {record.file_bytes}" for record in records]
 
 
 def _missing(request: Request, here: Place, visitor: Visitor, found: Trial) -> Response:
@@ -187,7 +101,7 @@ def _finish(
         definition,
         who,
         position,
-        answers_in(fields, _asked_in(definition, stood[0].trial)),
+        answers_in(fields, asked_in(definition, stood[0].trial)),
         key=first(fields, "key") or f"finish-{position}",
         is_final=True,
         response_ms=_milliseconds(first(fields, "response_ms")),
@@ -209,16 +123,22 @@ def _again(
     record = here.clips.record(current.clip_id)
     if record is None:
         return _missing(request, here, visitor, current)
-    given = answers_in(fields, _asked_in(visitor.study.definition, current))
+    given = answers_in(fields, asked_in(visitor.study.definition, current))
+    shown = Shown(here, visitor, step, current, every, record)
     if isinstance(refused, AnswerError):
-        return _trial_page(here, visitor, step, every, record, given=given, error=refused)
-    return _trial_page(here, visitor, step, every, record, given=given, note="trial.locked_kept")
+        return trial_page(shown, given=given, error=refused)
+    return trial_page(shown, given=given, note="trial.locked_kept")
 
 
 def _lead(request: Request, here: Place, asker: Asker) -> Response:
     """Lead to where they are somebody who is not among the trials."""
     who, _ = here.db.look(partial(_look, request, here, asker))
     return to_current(here, as_visitor(request, here, participants.record_of(who), asker.token))
+
+
+def asked_in(definition: StudyDefinition, trial: Trial) -> tuple[Question, ...]:
+    """Return what a trial asks."""
+    return definition.questions_at(trial.number, is_practice=trial.is_practice)
 
 
 def _milliseconds(text: str) -> int | None:

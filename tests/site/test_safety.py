@@ -118,7 +118,7 @@ def test_a_fault_of_ours_shows_a_code_and_the_log_holds_the_cause(
         raise ZeroDivisionError("the cause")
 
     guest.walk_to_trial()
-    monkeypatch.setattr("study.site.trial.minutes_left", fail)
+    monkeypatch.setattr("study.site.trial_page.minutes_left", fail)
     page = guest.get("/trial/1")
     assert page.status_code == 500
     assert "That was our fault, not yours." in page.text

@@ -1,0 +1,73 @@
+"""The requests that come most, answered past the framework: entries, and the pages of trials.
+
+Its layers cost as much as storing an answer does. What is asked, the errors and the headers are
+the same as through them, because both ways lead to the same functions; and whatever is not quite
+ordinary (a query, another site's page, a path that no number ends) takes the longer way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from functools import partial
+from typing import Final
+
+from fastapi import FastAPI, Request
+from fastapi.responses import Response
+from starlette.types import Receive, Scope, Send
+
+from study.site import news, trial
+from study.site.errors import answer_error, is_foreseen
+from study.site.headers import completed, is_foreign, limited
+
+Act = Callable[[Request], Awaitable[Response]]
+TRIAL: Final = "/trial/"
+MOST_DIGITS: Final = 6
+_TRIAL_ACTS: Final = {"GET": trial.trial, "POST": trial.finish}
+
+
+class Express(FastAPI):
+    """An application with a short way for what comes most."""
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request, or let the framework do so."""
+        act = wanted(scope)
+        if act is None:
+            await super().__call__(scope, receive, send)
+            return
+        scope["app"] = self
+        request = Request(scope, limited(receive))
+        if is_foreign(request.headers):
+            await super().__call__(scope, receive, send)
+            return
+        await _answer(act, request, send)
+
+
+def wanted(scope: Scope) -> Act | None:
+    """Return what answers a request the short way; None for any other."""
+    if scope["type"] != "http" or scope["query_string"] or scope.get("root_path"):
+        return None
+    path, method = scope["path"], scope["method"]
+    if path == "/events":
+        return news.report if method == "POST" else None
+    if not path.startswith(TRIAL) or method not in _TRIAL_ACTS:
+        return None
+    number = path[len(TRIAL) :]
+    if not (number.isascii() and number.isdecimal() and len(number) <= MOST_DIGITS):
+        return None
+    return partial(_TRIAL_ACTS[method], position=int(number))
+
+
+async def _answer(act: Act, request: Request, send: Send) -> None:
+    """Send what comes of a request; what was not foreseen the server's log shall have too."""
+    broken: Exception | None = None
+    try:
+        response = await act(request)
+    except Exception as error:
+        response = answer_error(request, error)
+        broken = None if is_foreseen(error) else error
+    headers = completed(response.raw_headers)
+    start = {"type": "http.response.start", "status": response.status_code, "headers": headers}
+    await send(start)
+    await send({"type": "http.response.body", "body": response.body})
+    if broken is not None:
+        raise broken
