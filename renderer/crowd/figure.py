@@ -14,6 +14,7 @@ import numpy as np
 
 from renderer.body.decimate import decimate
 from renderer.body.makehuman import Floats, Indices, base_mesh, phenotype, target_offsets
+from renderer.body.normals import vertex_normals
 from renderer.body.rig import Rig, fit_rig
 from renderer.crowd.dress import PARTS, Piece, pieces
 from renderer.crowd.face_parts import FacePart, brows, eyes
@@ -125,16 +126,6 @@ def _thinned(rows: bytes, triangles: bytes, importance: bytes, target: int) -> I
         target=target,
         importance=np.frombuffer(importance),
     )
-
-
-def vertex_normals(positions: Floats, triangles: Indices) -> Floats:
-    """Return area-weighted unit normals (n, 3)."""
-    a, b, c = (positions[triangles[:, k]] for k in range(3))
-    facets = np.cross(b - a, c - a)
-    normals = np.zeros_like(positions)
-    for k in range(3):
-        np.add.at(normals, triangles[:, k], facets)
-    return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9))
 
 
 def _fold_fingers(rig: Rig) -> Floats:

@@ -11,6 +11,7 @@ from typing import Final
 import moderngl
 import numpy as np
 
+from renderer.body.normals import unit
 from renderer.crowd.crowd import Crowd
 from renderer.exchange.meshes import Floats, Mesh, Triangles, joined
 from renderer.head.buffers import STATIC, CellMesh
@@ -62,7 +63,7 @@ def crowd_meshes(crowd: Crowd, time_s: float) -> Iterator[tuple[str, Mesh]]:
         part = slice(figure.first_vertex, figure.first_vertex + len(body.positions_mm))
         yield (
             f"crowd_{number + 1}_{figure.member.person.name.lower()}",
-            Mesh(rows[part, :3], _unit(rows[part, 3:]), body.triangles, albedo=body.surface[:, :3]),
+            Mesh(rows[part, :3], unit(rows[part, 3:]), body.triangles, albedo=body.surface[:, :3]),
         )
 
 
@@ -70,7 +71,7 @@ def read_cells(mesh: CellMesh) -> Mesh:
     """Read a surface of the head back: positions, normals, albedo."""
     rows = _columns(mesh._static, *STATIC)
     triangles = np.frombuffer(mesh._index.read(), np.int32).reshape(-1, 3)
-    normals = _without_gaps(_unit(rows["in_normal"]), triangles)
+    normals = _without_gaps(unit(rows["in_normal"]), triangles)
     return Mesh(rows["in_position"], normals, triangles, albedo=rows["in_albedo"])
 
 
@@ -78,7 +79,7 @@ def _without_gaps(normals: Floats, triangles: Triangles) -> Floats:
     """Give vertices without a normal, where a surface ends in a point, that of their neighbours."""
     for vertex in np.flatnonzero(np.linalg.norm(normals, axis=1) < 0.5):
         beside = triangles[(triangles == vertex).any(axis=1)].ravel()
-        normals[vertex] = _unit(normals[beside].sum(axis=0))
+        normals[vertex] = unit(normals[beside].sum(axis=0))
     return normals
 
 
@@ -104,10 +105,10 @@ def tubes(points_mm: Floats, radius_mm: Floats, colour: Floats, *, sides: int = 
     """Return hairs (n, k, 3) as tubes; ``radius_mm`` (n, k) at the root shrinks to the tip."""
     count, steps, _ = points_mm.shape
     tangent = np.gradient(points_mm, axis=1)
-    tangent = _unit(tangent.reshape(-1, 3)).reshape(points_mm.shape)
+    tangent = unit(tangent.reshape(-1, 3)).reshape(points_mm.shape)
     # Any direction across will do; the axis that the root leaves most is never along the hair.
     least = np.eye(3)[np.abs(tangent[:, 0]).argmin(axis=1)][:, None]
-    side = _unit(np.cross(tangent, least).reshape(-1, 3)).reshape(points_mm.shape)
+    side = unit(np.cross(tangent, least).reshape(-1, 3)).reshape(points_mm.shape)
     other = np.cross(tangent, side)
     angle = 2 * np.pi * np.arange(sides) / sides
     outward = np.cos(angle)[:, None] * side[:, :, None] + np.sin(angle)[:, None] * other[:, :, None]
@@ -144,7 +145,3 @@ def _columns(buffer: moderngl.Buffer, layout: str, names: Sequence[str]) -> dict
         name: rows[:, end - width : end]
         for name, width, end in zip(names, widths, ends, strict=True)
     }
-
-
-def _unit(vectors: Floats) -> Floats:
-    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))

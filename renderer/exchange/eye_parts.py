@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from renderer.body.normals import vertex_normals
 from renderer.exchange.meshes import Floats, Mesh, Triangles, joined
 from renderer.eye.anatomy import (
     IRIS_MAP_RADIUS_MM,
@@ -92,7 +93,7 @@ def _iris(
     uv = 0.5 + 0.5 * on_map * [-1.0 if mirror else 1.0, 1.0] / MAP_EDGE_MM
     if height_mm is not None:
         points[:, 2] += _sampled(height_mm, uv) - _mean_height(height_mm)
-    tissue = Mesh(points, _vertex_normals(points, triangles), triangles, uv)
+    tissue = Mesh(points, vertex_normals(points, triangles), triangles, uv)
     return joined([tissue, _wall(points[-segments:], uv[-segments:]), _behind_pupil(segments)])
 
 
@@ -185,12 +186,3 @@ def _mean_height(height_mm: Floats) -> float:
     radius = np.hypot(*np.meshgrid(axis, axis))
     tissue = (radius > MAP_PUPIL_RADIUS_MM + 0.1) & (radius < IRIS_MAP_RADIUS_MM - 0.1)
     return float(height_mm[tissue].mean() if tissue.any() else height_mm.mean())
-
-
-def _vertex_normals(points: Floats, triangles: Triangles) -> Floats:
-    a, b, c = (points[triangles[:, k]] for k in range(3))
-    faces = np.cross(b - a, c - a)
-    total = np.zeros_like(points)
-    for corner in range(3):
-        np.add.at(total, triangles[:, corner], faces)
-    return unit(total)

@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from renderer.detail import Detail
 from renderer.eye.geometry import Mesh
+from renderer.eye.optics import unit
 from renderer.eye.silhouette import Shaded, detail_mesh
 from renderer.outlines import EYE
 from renderer.program import build_program
@@ -65,9 +66,9 @@ def laid_on(points: Array, mesh: Mesh) -> Array:
     rim, inside the head, stay where they are.
     """
     corners = mesh.positions[mesh.triangles]
-    directions = _unit(points)
+    directions = unit(points)
     count = min(CANDIDATES, len(corners))
-    _, near = cKDTree(_unit(corners.mean(axis=1))).query(directions, k=count)
+    _, near = cKDTree(unit(corners.mean(axis=1))).query(directions, k=count)
     a, b, c = (corners[near, i] for i in range(3))
     normal = np.cross(b - a, c - a)
     facing = np.einsum("nki,ni->nk", normal, directions)
@@ -86,7 +87,3 @@ def laid_on(points: Array, mesh: Mesh) -> Array:
     row = np.arange(len(points))
     is_over = inside[row, best] > -EDGE_SLACK
     return np.where(is_over[:, None], hit[row, best], points)
-
-
-def _unit(vectors: Array) -> Array:
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))

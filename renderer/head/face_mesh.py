@@ -15,6 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats, Indices, Mesh, data_folder
+from renderer.body.normals import unit, vertex_normals
 from renderer.body.subdivide import subdivide
 from renderer.camera import eye_centre_mm
 from renderer.head import lid_fit
@@ -118,9 +119,7 @@ def face_mesh(poses: LidPoses = BOTH_STRAIGHT) -> FaceMesh:
     )
     patches = [_patch(lids[eye], eye) for eye in (0, 1)]
     patches = [
-        replace(
-            patch, normals=_unit(seam(patch, face.fine).blend(patch.normals, face.fine.normals))
-        )
+        replace(patch, normals=unit(seam(patch, face.fine).blend(patch.normals, face.fine.normals)))
         for patch in patches
     ]
     return FaceMesh(
@@ -166,25 +165,6 @@ def to_patch(points: Floats, eye: int) -> Floats:
 def triangles_of(quads: Indices) -> Indices:
     """Split quads (m, 4) into triangles (2 m, 3)."""
     return quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
-
-
-def vertex_normals(points: Floats, triangles: Indices) -> Floats:
-    """Return area-weighted unit normals (n, 3)."""
-    a, b, c = (points[triangles[:, i]] for i in range(3))
-    faces = np.cross(b - a, c - a)
-    total = np.stack(
-        [
-            np.bincount(triangles.ravel(), np.repeat(faces[:, k], 3), minlength=len(points))
-            for k in range(3)
-        ],
-        axis=1,
-    )
-    return _unit(np.asarray(total, dtype=float))
-
-
-def _unit(vectors: Floats) -> Floats:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.asarray(vectors / np.maximum(lengths, 1e-12))
 
 
 def _head_cage(body: Figure) -> tuple[Floats, Indices]:

@@ -14,7 +14,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.head.face_mesh import FaceMesh, vertex_normals
+from renderer.body.normals import vertex_normals
+from renderer.head.face_mesh import FaceMesh
 from renderer.head.strand_group import Strands, joined
 
 COLOUR: Final = (0.060, 0.033, 0.019)

@@ -13,10 +13,11 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats
+from renderer.body.normals import unit
 from renderer.head.lash_marks import pores, root_shades
 from renderer.head.lash_rows import LOWER, UPPER, Growth, LashRow, draw_growth
 from renderer.head.lid_fit import LidPatch
-from renderer.head.lid_ground import frames_at, on_skin, rim_columns, skin_facing, unit
+from renderer.head.lid_ground import frames_at, on_skin, rim_columns, skin_facing
 from renderer.head.strand_group import Strands, joined
 
 POINTS: Final = 16

@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats
+from renderer.body.normals import unit
 from renderer.head.lid_fit import LidPatch
 
 OWN_SKIN: Final = 0.3  # what the lid's skin says against the globe beneath, about a lash's frame
@@ -91,11 +92,6 @@ def on_skin(lid: LidPatch, column: Floats, beyond_mm: Floats) -> Floats:
         sides.append(_at_rows(lid.points_mm[one], rows))
     share = (column - base)[:, None]
     return np.asarray(sides[0] * (1 - share) + sides[1] * share)
-
-
-def unit(vectors: Floats) -> Floats:
-    """Return vectors (..., 3) of length 1."""
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
 def _smoothed(values: Floats) -> Floats:

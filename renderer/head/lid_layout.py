@@ -14,6 +14,7 @@ import numpy as np
 from scipy import ndimage
 
 from renderer.body.makehuman import Floats
+from renderer.body.normals import unit
 from renderer.head.face_mesh import SkinPart, to_patch
 from renderer.head.lid_rims import LATERAL_MM
 
@@ -70,7 +71,7 @@ def lay_out(part: SkinPart, eye: int, *, edge: Floats, upper: Floats) -> Layout:
     flat = rim[None] + away[None] * places[:, None, None]
     mirror = [1.0 if eye else -1.0, 1.0, 1.0]  # from patch space to the world
     around, across = _texel_places()
-    fields = [local[..., :2], flat, stretch, _unit(along) * mirror, _unit(outward) * mirror, normal]
+    fields = [local[..., :2], flat, stretch, unit(along) * mirror, unit(outward) * mirror, normal]
     xy, flat, stretch, along, outward, normal = (_fill(field, rows) for field in fields)
     column = np.stack([edge, upper], axis=-1)[None].repeat(COARSE, axis=0)
     own = _fill(column, rows)
@@ -122,11 +123,6 @@ def _fill(field: Floats, rows: int) -> Floats:
         for k in range(field.shape[2])
     ]
     return np.stack(layers, axis=-1)
-
-
-def _unit(vectors: Floats) -> Floats:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(length, 1e-6))
 
 
 def from_outer_canthus(place: Layout) -> tuple[Floats, Floats]:

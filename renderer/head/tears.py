@@ -14,7 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.head.face_mesh import to_world, triangles_of, vertex_normals
+from renderer.body.normals import unit, vertex_normals
+from renderer.head.face_mesh import to_world, triangles_of
 from renderer.head.lid_fit import LidPatch
 from renderer.head.lid_pose import LidPose
 from renderer.head.lid_rims import rim, smooth_step
@@ -73,9 +74,9 @@ def tear_strip(lid: LidPatch, *, is_upper: bool) -> TearStrip:
         (1 - t) ** 2 * top[:, None] + 2 * t * (1 - t) * corner[:, None] + t**2 * foot[:, None]
     ).reshape(-1, 3)
     triangles = _triangles(turned=is_upper)
-    tangents = np.repeat(_unit(np.gradient(corner, axis=0)), ACROSS, axis=0)
+    tangents = np.repeat(unit(np.gradient(corner, axis=0)), ACROSS, axis=0)
     tilt = np.repeat(_waves(x, TILT_WAVES, is_upper=is_upper), ACROSS)
-    normals = _unit(vertex_normals(points, triangles) + tilt[:, None] * tangents)
+    normals = unit(vertex_normals(points, triangles) + tilt[:, None] * tangents)
     gloss = np.clip(1.0 + _waves(x, GLOSS_WAVES, is_upper=is_upper), *GLOSSES)
     dry_nose, full_nose = ENDS_MM[0]
     dry_temple, full_temple = ENDS_MM[1]
@@ -105,8 +106,8 @@ def _waves(x_mm: Floats, waves: tuple[tuple[float, float], ...], *, is_upper: bo
 def _on_eye(corner: Floats, height_mm: Floats, pose: LidPose) -> Floats:
     """Return where the water ends on the globe, ``height_mm`` up from the rim."""
     along = np.gradient(corner, axis=0)
-    radial = _unit(corner)
-    up = _unit(np.cross(radial, along))
+    radial = unit(corner)
+    up = unit(np.cross(radial, along))
     xy = (corner + height_mm[:, None] * up)[:, :2]
     return np.column_stack([xy, on_globe(xy, pose)])
 
@@ -125,10 +126,6 @@ def _on_margin(lid: LidPatch, corner: Floats, depth_mm: float, *, is_upper: bool
     order = np.argsort(foot[:, 0], kind="stable")
     shift = np.array([np.interp(corner[:, 0], foot[order, 0], foot[order, k]) for k in (1, 2)])
     return np.column_stack([corner[:, 0], *shift])
-
-
-def _unit(vectors: Floats) -> Floats:
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))
 
 
 def _triangles(*, turned: bool) -> Indices:

@@ -15,6 +15,7 @@ import numpy as np
 
 from renderer.body.living_mesh import LivingMesh
 from renderer.body.makehuman import Floats, Indices
+from renderer.body.normals import unit
 
 FLIP_COSINE: Final = 0.3  # a triangle may not turn further than this while a vertex goes
 LEAST_HEIGHT: Final = 0.1  # of a triangle over its longest edge: slivers shade badly
@@ -137,8 +138,8 @@ def _quadrics(properties: Floats, triangles: Indices, points_mm: Floats) -> _Qua
     for start in range(0, len(triangles), CHUNK):
         rows = triangles[start : start + CHUNK]
         p, q, r = (properties[rows[:, corner]] for corner in range(3))
-        first = _unit(q - p)
-        second = _unit(r - p - ((r - p) * first).sum(axis=1, keepdims=True) * first)
+        first = unit(q - p)
+        second = unit(r - p - ((r - p) * first).sum(axis=1, keepdims=True) * first)
         along = [(p * axis).sum(axis=1, keepdims=True) for axis in (first, second)]
         area = np.linalg.norm(_faces(points_mm, rows)[0], axis=1) / 2 + 1e-9
         square = (
@@ -152,8 +153,3 @@ def _quadrics(properties: Floats, triangles: Indices, points_mm: Floats) -> _Qua
             np.add.at(sums.constant, rows[:, corner], constant * area)
             np.add.at(sums.weight, rows[:, corner], area)
     return sums
-
-
-def _unit(vectors: Floats) -> Floats:
-    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.asarray(vectors / np.maximum(lengths, 1e-12))
