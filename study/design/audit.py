@@ -91,8 +91,9 @@ def _plan(definition: StudyDefinition) -> Iterator[str]:
     if definition.per_person is not None:
         yield (
             f"One person sees {len(definition.blocks[0])} of {len(definition.trial_clips)} clips. "
-            f"{blocks} blocks x {directions} directions are {blocks * directions} arms: after so "
-            "many people every clip was shown equally often in each direction."
+            f"{blocks} blocks x {directions} direction{'s' * (directions > 1)} are "
+            f"{blocks * directions} arms: after so many people every clip was shown equally often "
+            "in each direction."
         )
     if rows := len(order_rows(definition)):
         things = "kinds of trial" if definition.per_person else "clips"
@@ -133,6 +134,11 @@ def _general(definition: StudyDefinition) -> Iterator[str]:
             f"decision: no margins; the analysis takes {own.realism_points:g} points and "
             f"{100 * own.noticed_share:g} % of people, and the report says that they were set at "
             "analysis"
+        )
+    if definition.decision is not None and not definition.catch:
+        yield (
+            "catch: no equal pairs, so false alarms stay unknown, and no LoD can be called enough "
+            "by the rule of decision, however many people take part"
         )
     if not definition.practice:
         yield "practice: no clip; people learn the task on the first trials"

@@ -90,6 +90,15 @@ def test_the_audit_says_what_was_declared_or_that_nothing_was(raw: dict[str, Any
     assert any(line.startswith("decision: no margins; the analysis") for line in warnings(silent))
 
 
+def test_the_audit_warns_that_a_rule_cannot_be_met_without_equal_pairs(raw: dict[str, Any]) -> None:
+    expected = (
+        "catch: no equal pairs, so false alarms stay unknown, and no LoD can be called enough"
+    )
+    told = warnings(parse_definition(raw | {"decision": RULE, "catch": []}))
+    assert any(line.startswith(expected) for line in told)
+    assert not any(line.startswith("catch") for line in warnings(read_definition("lod")))
+
+
 @pytest.mark.parametrize(("name", "margin"), [("lod", 0.5), ("ablation", 0.25)])
 def test_the_studies_that_we_recommend_declare_their_margins(name: str, margin: float) -> None:
     rule = read_definition(name).decision
