@@ -40,14 +40,14 @@ def cells(model: OrdinalModel, parameters: Floats, grid: Grid) -> Cells:
     """Evaluate the model's probabilities at every node of the grid."""
     nodes = model.place(grid)
     spread = model.spreads(parameters)
-    tau = model.thresholds(parameters)
-    middle = model.middle() @ tau
+    tau = _thresholds(parameters, model.steps(parameters))
+    middle = (tau @ model.middle())[:, None]
     stretch = np.exp(spread[2] * nodes[2])
-    cut = middle + stretch * (tau[:, None] - middle)
+    cut = middle[..., None] + stretch * (tau - middle)[..., None]
     noise = model.log_scales(parameters)[:, None, None] + spread[1] * nodes[1]
     shrink = np.exp(-noise)
     eta = model.locations(parameters)
-    bounds = (cut[None] - eta[:, None, None] - spread[0] * nodes[0]) * shrink
+    bounds = (cut - eta[:, None, None] - spread[0] * nodes[0]) * shrink
     log_p = np.maximum(model.link.log_intervals(bounds), _FLOOR)
     return Cells(
         log_p, bounds, np.broadcast_to(shrink, (*eta.shape, 1, len(stretch))), stretch, nodes
@@ -126,27 +126,31 @@ def _gradient(model: OrdinalModel, parameters: Floats, at: Cells, expected: Floa
     by_eta = -by_cut.sum(axis=(1, 2))
     by_noise = -(by_bound * at.bounds).sum(axis=1)  # (S, Q)
     spread = model.spreads(parameters)
-    tau, middle = model.thresholds(parameters), model.middle()
-    away = tau - middle @ tau
-    per_node = by_cut.sum(axis=0)  # (K-1, Q)
-    by_tau = per_node @ at.stretch + middle * float(per_node.sum(axis=0) @ (1.0 - at.stretch))
+    steps, middle = model.steps(parameters), model.middle()
+    tau = _thresholds(parameters, steps)
+    away = tau - (tau @ middle)[:, None]
+    if not model.nominal_terms:
+        by_cut = by_cut.sum(axis=0, keepdims=True)  # thresholds are the same for all stimuli
+    by_tau = by_cut @ at.stretch + middle * (by_cut.sum(axis=1) @ (1.0 - at.stretch))[:, None]
     by_spread = {
         LENIENCY: -spread[0] * float(by_cut.sum(axis=(0, 1)) @ at.nodes[0]),
         INCONSISTENCY: spread[1] * float(by_noise.sum(axis=0) @ at.nodes[1]),
-        STYLE: spread[2] * float((away @ per_node) @ (at.stretch * at.nodes[2])),
+        STYLE: spread[2] * float(np.einsum("sk,skq->q", away, by_cut) @ (at.stretch * at.nodes[2])),
     }
+    by_steps = np.cumsum(by_tau[:, :0:-1], axis=1)[:, ::-1] * steps  # (S or 1, K-2)
     return np.concatenate(
         [
-            _by_steps(model, parameters, by_tau),
+            [by_tau.sum()],
+            by_steps.sum(axis=0),
             by_eta @ model.predictor.jacobian(parameters[model.slices["location"]]),
             by_noise.sum(axis=1) @ model.scale if model.scale_terms else np.zeros(0),
+            (model.nominal.T @ by_steps).ravel() if model.nominal_terms else np.zeros(0),
             np.array([by_spread[effect] for effect in model.effects]),
         ]
     )
 
 
-def _by_steps(model: OrdinalModel, parameters: Floats, by_tau: Floats) -> Floats:
-    """Turn d/d tau into d/d (first threshold, log steps)."""
-    beyond = np.cumsum(by_tau[::-1])[::-1]
-    beyond[1:] *= np.exp(parameters[1 : model.categories - 1])
-    return beyond
+def _thresholds(parameters: Floats, steps: Floats) -> Floats:
+    """Return tau (n_stimuli, n_categories - 1), or one row where they are the same for all."""
+    first = np.full((len(steps), 1), parameters[0])
+    return np.cumsum(np.concatenate([first, steps], axis=1), axis=1)

@@ -31,7 +31,10 @@ class OrdinalModel:
     """Where the stimuli stand and what may differ between people.
 
     ``scale`` (n_stimuli, n_scale_terms) makes answers to some stimuli, or of some groups, more
-    scattered.
+    scattered. ``nominal`` (n_stimuli, n_nominal_terms) lets the distances between thresholds differ
+    by stimulus: each term has a parameter for each of them, on the logarithm, so that thresholds
+    keep their order. For a factor whose levels all have a location it says what category-specific
+    effects of that factor say.
     """
 
     predictor: Predictor
@@ -40,6 +43,8 @@ class OrdinalModel:
     link: Link = PROBIT
     scale: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     scale_terms: tuple[str, ...] = ()
+    nominal: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    nominal_terms: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if unknown := set(self.effects) - set(PERSON_EFFECTS):
@@ -52,24 +57,27 @@ class OrdinalModel:
         """The parameters' names in their order."""
         steps = [f"log_step_{k}" for k in range(2, self.categories)]
         scales = [f"scale:{term}" for term in self.scale_terms]
+        own = [f"{step}:{term}" for term in self.nominal_terms for step in steps]
         spreads = [f"log_sd:{effect}" for effect in self.effects]
-        return ("threshold_1", *steps, *self.predictor.names, *scales, *spreads)
+        return ("threshold_1", *steps, *self.predictor.names, *scales, *own, *spreads)
 
     @cached_property
     def kinds(self) -> tuple[str, ...]:
         """What each parameter is: a key of the priors."""
         steps = ["log_step"] * (self.categories - 2)
         scales = ["scale"] * len(self.scale_terms)
+        own = ["nominal"] * (self.categories - 2) * len(self.nominal_terms)
         spreads = [f"log_sd:{effect}" for effect in self.effects]
-        return ("threshold", *steps, *self.predictor.kinds, *scales, *spreads)
+        return ("threshold", *steps, *self.predictor.kinds, *scales, *own, *spreads)
 
     @cached_property
     def slices(self) -> dict[str, slice]:
-        """Where each part of the parameters stands: thresholds, location, scale, spread."""
+        """Where each part stands: thresholds, location, scale, nominal, spread."""
         sizes = {
             "thresholds": self.categories - 1,
             "location": len(self.predictor.names),
             "scale": len(self.scale_terms),
+            "nominal": len(self.nominal_terms) * (self.categories - 2),
             "spread": len(self.effects),
         }
         ends = np.cumsum(list(sizes.values()))
@@ -79,10 +87,21 @@ class OrdinalModel:
         }
 
     def thresholds(self, parameters: Floats) -> Floats:
-        """Return tau (..., n_categories - 1) of parameters (..., n_parameters)."""
+        """Return tau (..., n_categories - 1) of parameters (..., n_parameters).
+
+        With nominal terms these are the thresholds where all terms are 0.
+        """
         own = parameters[..., : self.categories - 1]
         steps = np.concatenate([own[..., :1], np.exp(own[..., 1:])], axis=-1)
         return np.asarray(np.cumsum(steps, axis=-1))
+
+    def steps(self, parameters: Floats) -> Floats:
+        """Return what lies between thresholds (n_stimuli, n_categories - 2), or one row for all."""
+        logs = parameters[None, 1 : self.categories - 1]
+        if self.nominal_terms:
+            own = parameters[self.slices["nominal"]].reshape(len(self.nominal_terms), -1)
+            logs = logs + self.nominal @ own
+        return np.asarray(np.exp(logs))
 
     def locations(self, parameters: Floats) -> Floats:
         """Return eta (n_stimuli,): the stimuli's places on the latent scale."""

@@ -20,6 +20,7 @@ PRIORS: Final[Priors] = {
     "location": (0.0, 4.0),
     "contrast": (0.0, 0.25),
     "scale": (0.0, 0.5),
+    "nominal": (0.0, 0.5),
     "log_height": (float(np.log(1.5)), 1.0),
     "middle": (6.5, 2.0),  # log2 of 90 pixels, two doublings either way
     "log_width": (0.0, 0.5),

@@ -14,7 +14,10 @@ from analysis.models.predictors import Contrasted, Linear
 from analysis.models.quadrature import normal_grid
 
 
-def random_model(rng: np.random.Generator, link: Link, categories: int) -> OrdinalModel:
+def random_model(
+    rng: np.random.Generator, link: Link, categories: int, *, has_nominal: bool = False
+) -> OrdinalModel:
+    own = {"nominal": rng.normal(size=(6, 2)), "nominal_terms": ("x", "y")} if has_nominal else {}
     return OrdinalModel(
         Contrasted(rng.normal(size=(6, 3)), rng.normal(size=(6, 3)), ("a", "b", "c")),
         categories,
@@ -22,14 +25,18 @@ def random_model(rng: np.random.Generator, link: Link, categories: int) -> Ordin
         link,
         scale=rng.normal(size=(6, 1)),
         scale_terms=("group",),
+        **own,
     )
 
 
 @pytest.mark.parametrize("link", [PROBIT, LOGIT])
 @pytest.mark.parametrize("categories", [3, 4, 5])
-def test_the_gradient_is_that_of_finite_differences(link: Link, categories: int) -> None:
+@pytest.mark.parametrize("has_nominal", [False, True])
+def test_the_gradient_is_that_of_finite_differences(
+    link: Link, categories: int, has_nominal: bool
+) -> None:
     rng = np.random.default_rng(7)
-    model = random_model(rng, link, categories)
+    model = random_model(rng, link, categories, has_nominal=has_nominal)
     counts = count_answers(
         rng.integers(7, size=200),
         rng.integers(6, size=200),

@@ -1,0 +1,86 @@
+"""The proportional-odds check: are answers more scattered, or thresholds other, for some stimuli?
+
+Likelihood-ratio tests like R's ``scale_test`` and ``nominal_test`` (package ordinal): the noise, or
+the distances between thresholds, may differ between the levels of a factor. People's leniency is
+in all fits, priors are in none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy.stats import chi2
+
+from analysis.models.counts import Counts
+from analysis.models.fitting import OrdinalFit, fit
+from analysis.models.nesting import best_log_likelihood
+from analysis.models.ordinal import OrdinalModel
+
+Floats = NDArray[np.float64]
+SCALE, CATEGORIES = "scale", "categories"
+COLUMNS: Final = ("factor", "test", "statistic", "dof", "p", "note")
+
+
+def odds_tests(
+    model: OrdinalModel,
+    counts: Counts,
+    factors: Mapping[str, Floats],
+    *,
+    weights: Floats | None = None,
+) -> pd.DataFrame:
+    """Test each factor's scale and category-specific effects; columns are COLUMNS.
+
+    ``factors`` have for every level but the first a column of 0 and 1 (n_stimuli, n_levels - 1),
+    which is also among the model's locations. A test that the answers do not allow is empty and its
+    ``note`` says why.
+    """
+    used, own = _used(model, counts)
+    if used.categories < 3:
+        note = f"people used {used.categories} of the scale's categories; it takes three"
+        return _empty(factors, note)
+    plain = fit(used, own, weights=weights)
+    rows = []
+    for factor, columns in factors.items():
+        for test in (SCALE, CATEGORIES):
+            rows.append({"factor": factor, "test": test, **_ratio(plain, columns, test)})
+    return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def _used(model: OrdinalModel, counts: Counts) -> tuple[OrdinalModel, Counts]:
+    """Leave out the categories that nobody used: without priors they have no place."""
+    is_used = counts.table.sum(axis=(0, 1)) > 0
+    own = Counts(counts.table[:, :, is_used])
+    return replace(model, categories=own.categories), own
+
+
+def _ratio(plain: OrdinalFit, columns: Floats, test: str) -> dict[str, object]:
+    if not columns.shape[1]:
+        return _nothing("all stimuli share one level")
+    terms = tuple(f"level_{i}" for i in range(2, columns.shape[1] + 2))
+    wider = (
+        replace(plain.model, scale=columns, scale_terms=terms)
+        if test == SCALE
+        else replace(plain.model, nominal=columns, nominal_terms=terms)
+    )
+    statistic = 2.0 * (best_log_likelihood(wider, plain) - plain.log_likelihood)
+    dof = len(wider.names) - len(plain.model.names)
+    p = float(chi2.sf(max(statistic, 0.0), dof))
+    return {"statistic": max(statistic, 0.0), "dof": dof, "p": p, "note": ""}
+
+
+def _nothing(note: str) -> dict[str, object]:
+    return {"statistic": np.nan, "dof": 0, "p": np.nan, "note": note}
+
+
+def _empty(factors: Mapping[str, Floats], note: str) -> pd.DataFrame:
+    rows = [
+        {"factor": factor, "test": test, **_nothing(note)}
+        for factor in factors
+        for test in (SCALE, CATEGORIES)
+    ]
+    return pd.DataFrame(rows, columns=list(COLUMNS))
