@@ -15,13 +15,14 @@ from typing import Final
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ndtri, stdtrit
+from scipy.special import ndtri, stdtr, stdtrit
 
 from analysis.descriptive import CONFIDENCE, answered, t_interval
 from analysis.tables.ordering import distance_order
 
 Floats = NDArray[np.float64]
 ALL_DISTANCES: Final = "all"
+_NEAR_ONE: Final = 1 - 1e-15  # Fisher's z of 1 is infinite
 
 
 @dataclass(frozen=True)
@@ -162,6 +163,18 @@ def mean_tau(tau: ArrayLike, untied: ArrayLike) -> tuple[float, float, float]:
     return (float(np.tanh(mean)), float(low), float(high))
 
 
+def tau_p(mean: tuple[float, float, float], people: int) -> float:
+    """Return the two-sided p value of "no correlation" from ``mean_tau`` of so many people.
+
+    Its interval is Student's t on Fisher's z scale, hence so is the test; nan without an interval.
+    """
+    z, low, high = np.arctanh(np.clip(mean, -_NEAR_ONE, _NEAR_ONE))
+    if people < 2 or not high > low:
+        return np.nan
+    error = (high - low) / (2 * stdtrit(people - 1, 0.5 + CONFIDENCE / 2))
+    return float(2 * stdtr(people - 1, -abs(z) / error))
+
+
 def repeated_measures_correlation(
     person: ArrayLike, x: ArrayLike, y: ArrayLike
 ) -> tuple[float, float, float, int]:
@@ -197,7 +210,8 @@ def rank_correlations(ratings: pd.DataFrame) -> pd.DataFrame:
     """Return, per distance and over all, how ratings order with the actual LoD.
 
     Columns: distance, people, without_spread (people whose ratings are all alike), ratings, tau_b
-    with tau_low, tau_high, somers_d with d_low, d_high, rmcorr with rm_low, rm_high, rm_dof.
+    with tau_low, tau_high and tau_p (of no correlation), somers_d with d_low, d_high, rmcorr with
+    rm_low, rm_high, rm_dof.
     """
     people = person_concordance(ratings)
     rows = answered(ratings[ratings["lod_rank"].notna()])
@@ -215,11 +229,12 @@ def rank_correlations(ratings: pd.DataFrame) -> pd.DataFrame:
         row |= {"without_spread": int(own["tau_b"].isna().sum())}
         row |= {"ratings": int(own["ratings"].sum())}
         row |= {"tau_b": tau, "tau_low": tau_low, "tau_high": tau_high}
+        row |= {"tau_p": tau_p((tau, tau_low, tau_high), int(own["tau_b"].notna().sum()))}
         row |= {"somers_d": own["somers_d"].mean(), "d_low": d_low, "d_high": d_high}
         row |= {"rmcorr": r, "rm_low": r_low, "rm_high": r_high, "rm_dof": dof}
         table.append(row)
     columns = ["distance", "people", "without_spread", "ratings", "tau_b", "tau_low", "tau_high"]
-    columns += ["somers_d", "d_low", "d_high", "rmcorr", "rm_low", "rm_high", "rm_dof"]
+    columns += ["tau_p", "somers_d", "d_low", "d_high", "rmcorr", "rm_low", "rm_high", "rm_dof"]
     result = pd.DataFrame(table, columns=columns)
     is_only_one = len(result) == 2
     return result[result["distance"] != ALL_DISTANCES] if is_only_one else result

@@ -61,8 +61,26 @@ class Realism:
         own = parameters[:, at : at + len(self.cells) - 1]
         return np.column_stack([np.zeros(len(parameters)), own])
 
+    def categories(self) -> tuple[Floats, Floats]:
+        """Return the population's share of each rating for each cell (n_cells, n_categories).
+
+        Beside it draws of the shares (n_draws, n_cells, n_categories).
+        """
+        return self._shares(self.fit.parameters[None])[0], self._shares(self.draws)
+
+    def _shares(self, parameters: Floats) -> Floats:
+        above = self._above(parameters)
+        sure, never = np.ones((*above.shape[:2], 1)), np.zeros((*above.shape[:2], 1))
+        return -np.diff(np.concatenate([sure, above, never], axis=2), axis=2)
+
     def _ratings(self, parameters: Floats) -> Floats:
-        """Average over people: leniency in closed form, scatter and style on a small grid."""
+        return self.stimuli.scale[0] + self._above(parameters).sum(axis=2)
+
+    def _above(self, parameters: Floats) -> Floats:
+        """Return the shares above each threshold (n_draws, n_cells, n_categories - 1).
+
+        Averages over people: leniency in closed form, scatter and style on a small grid.
+        """
         model = self.fit.model
         effects = [effect for effect in (INCONSISTENCY, STYLE) if effect in model.effects]
         grid = normal_grid([_STYLE_NODES] * len(effects))
@@ -70,14 +88,14 @@ class Realism:
         spread, tau = model.spreads(parameters), model.thresholds(parameters)
         middle = tau @ model.middle()
         places = self._places(parameters)
-        total = np.full(places.shape, float(self.stimuli.scale[0]))
+        total = np.zeros((*places.shape, tau.shape[1]))
         for q, weight in enumerate(np.exp(grid.log_weights)):
             noise = np.exp(2 * spread[:, 1] * _node(nodes, INCONSISTENCY, q))
             width = np.sqrt(noise + spread[:, 0] ** 2)
             stretch = np.exp(spread[:, 2] * _node(nodes, STYLE, q))
             for k in range(tau.shape[1]):
                 cut = middle + stretch * (tau[:, k] - middle)
-                total += weight * ndtr((places - cut[:, None]) / width[:, None])
+                total[:, :, k] += weight * ndtr((places - cut[:, None]) / width[:, None])
         return total
 
     def table(self) -> pd.DataFrame:

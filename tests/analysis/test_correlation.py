@@ -11,6 +11,7 @@ from analysis.correlation import (
     person_concordance,
     rank_correlations,
     repeated_measures_correlation,
+    tau_p,
 )
 from analysis.tables.reading import tables_from
 
@@ -157,3 +158,11 @@ def test_interval_of_mean_tau_keeps_its_level_without_a_relation(
         _, low, high = mean_tau(pairs.tau_b, pairs.untied)
         misses += not low <= 0 <= high
     assert misses / 600 == pytest.approx(0.05, abs=0.03)
+
+
+def test_the_p_value_of_tau_is_that_of_students_t_on_fishers_scale() -> None:
+    tau = np.array([0.5, 0.1, 0.62, -0.2, 0.3])
+    mean = mean_tau(tau, np.full(5, 40))
+    assert tau_p(mean, 5) == pytest.approx(stats.ttest_1samp(np.arctanh(tau), 0).pvalue)
+    assert np.isnan(tau_p((0.4, np.nan, np.nan), 5))
+    assert np.isnan(tau_p((0.4, 0.1, 0.6), 1))

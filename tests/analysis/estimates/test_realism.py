@@ -54,6 +54,15 @@ def test_the_populations_means_come_back(crowd: Realism) -> None:
         assert low[i] < rating[i] < high[i]
 
 
+def test_shares_of_ratings_add_up_and_give_the_mean(crowd: Realism) -> None:
+    shares, draws = crowd.categories()
+    assert shares.shape == (len(crowd.cells), 5)
+    assert shares.min() > 0
+    assert shares.sum(axis=1) == pytest.approx(1)
+    assert shares @ np.arange(1, 6) == pytest.approx(crowd.expected()[0])
+    assert draws @ np.arange(1, 6) == pytest.approx(crowd.expected()[1])
+
+
 def test_contrast_is_found_where_catch_pairs_show_eyes_beside_their_like(crowd: Realism) -> None:
     kappa, error = crowd.fit.value("contrast"), crowd.fit.standard_error("contrast")
     assert abs(kappa - POPULATION.contrast) < 3 * error
