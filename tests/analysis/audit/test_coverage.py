@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from analysis.audit import audit_tables
-from analysis.coverage import coverage, linked_groups
+from analysis.audit.coverage import coverage, linked_groups
 from analysis.tables.reading import Tables
 
 NEAR, FAR, HIGH = ("near", "low"), ("far", "low"), ("near", "high")
