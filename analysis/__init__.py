@@ -15,14 +15,9 @@ if TYPE_CHECKING:
     from analysis.decision.margins import Margins, declared_margins
     from analysis.report.publish import Summary, analyse
     from analysis.simulation.observers import Answer, Observer, Stimulus, draw_observer
+    from analysis.tables.codebook import accepted_in, codebook, columns_of
     from analysis.tables.column import Column
-    from analysis.tables.columns import (
-        COLUMNS,
-        accepted_in,
-        codebook,
-        column_names,
-        columns_of,
-    )
+    from analysis.tables.columns import COLUMNS, column_names
     from analysis.tables.parsing import TableError
     from analysis.tables.reading import Tables, read_source, tables_from
 
@@ -35,7 +30,8 @@ _HOMES = {
     "tables.parsing": ("TableError",),
     "report.publish": ("Summary", "analyse"),
     "tables.reading": ("Tables", "read_source", "tables_from"),
-    "tables.columns": ("COLUMNS", "accepted_in", "codebook", "column_names", "columns_of"),
+    "tables.codebook": ("accepted_in", "codebook", "columns_of"),
+    "tables.columns": ("COLUMNS", "column_names"),
 }
 
 __all__ = [

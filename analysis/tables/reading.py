@@ -15,7 +15,8 @@ from typing import Any, Final
 import pandas as pd
 
 from analysis.decision.margins import DEFAULT, Margins, declared_margins
-from analysis.tables.columns import COLUMNS, SCALE, accepted_in, columns_of
+from analysis.tables.codebook import accepted_in, columns_of
+from analysis.tables.columns import COLUMNS, SCALE
 from analysis.tables.completing import complete_comparisons, complete_ratings, drop_repeated_rows
 from analysis.tables.csv_text import CsvText, read_csv_text
 from analysis.tables.parsing import TableError, check_header, parse_table

@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from analysis.tables.columns import codebook
+from analysis.tables.codebook import codebook
 from analysis.tables.parsing import TableError
 from analysis.tables.reading import read_source, tables_from
 

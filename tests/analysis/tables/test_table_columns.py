@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from analysis.tables import columns
+from analysis.tables import codebook, columns
 from renderer import clip, detail
 
 
@@ -36,8 +36,8 @@ def test_every_column_has_one_meaning(name: str) -> None:
 
 def test_codebook_survives_json_and_gives_back_what_a_study_accepts() -> None:
     own = {"lod": ["low", "ultra-no-caustics"], "rating": (1.0, 7.0)}
-    book = json.loads(json.dumps(columns.codebook(own)))
-    accepted = columns.accepted_in(book, "ratings")
+    book = json.loads(json.dumps(codebook.codebook(own)))
+    accepted = codebook.accepted_in(book, "ratings")
     assert accepted["lod"] == ["low", "ultra-no-caustics"]
     assert accepted["rating"] == (1.0, 7.0)
     assert accepted["eye"] == ["left", "right"]
@@ -45,5 +45,5 @@ def test_codebook_survives_json_and_gives_back_what_a_study_accepts() -> None:
 
 def test_a_studys_own_columns_enter_its_codebook() -> None:
     own = columns.Column("screen", "text", "which of the two laboratory screens")
-    book = columns.codebook(more={"participants": [own]})
+    book = codebook.codebook(more={"participants": [own]})
     assert book["tables"]["participants"][-1]["name"] == "screen"
