@@ -36,7 +36,8 @@ def odds_tests(
     """Test each factor's scale and category-specific effects; columns are COLUMNS.
 
     ``factors`` have for every level but the first a column of 0 and 1 (n_stimuli, n_levels - 1),
-    which is also among the model's locations. A test that the answers do not allow is empty and its
+    which is also among the model's locations. ``statistic`` is twice the ratio's logarithm; ``p``
+    takes it as chi-squared after the share of answers that the locations leave over. A test that the answers do not allow is empty and its
     ``note`` says why.
     """
     used, own = _used(model, counts)
@@ -68,9 +69,12 @@ def _ratio(plain: OrdinalFit, columns: Floats, test: str) -> dict[str, object]:
         else replace(plain.model, nominal=columns, nominal_terms=terms)
     )
     statistic = 2.0 * (best_log_likelihood(wider, plain) - plain.log_likelihood)
-    dof = len(wider.names) - len(plain.model.names)
-    p = float(chi2.sf(max(statistic, 0.0), dof))
-    return {"statistic": max(statistic, 0.0), "dof": dof, "p": p, "note": ""}
+    statistic, dof = max(statistic, 0.0), len(wider.names) - len(plain.model.names)
+    # Locations fitted to the same answers leave them less scattered than they are: with 140
+    # answers and 16 parameters the plain ratio's mean is 1.15 times what chi-squared expects.
+    left = 1.0 - len(plain.parameters) / max(plain.counts.total, len(plain.parameters))
+    p = float(chi2.sf(statistic * left, dof))
+    return {"statistic": statistic, "dof": dof, "p": p, "note": ""}
 
 
 def _nothing(note: str) -> dict[str, object]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import chi2
 
 from analysis.diagnostics.odds import CATEGORIES, SCALE, odds_tests
 from analysis.models.counts import Counts, count_answers
