@@ -15,6 +15,8 @@ import pandas as pd
 from analysis.tables.reading import Tables
 from analysis.thesis.measures import (
     Found,
+    Pairs,
+    apart,
     ends_of_scale,
     follows,
     gap_of_distances,
@@ -24,11 +26,6 @@ from analysis.thesis.measures import (
     noticed,
 )
 
-_REFRACTED: Final = tuple((a, b) for a in ("low", "medium") for b in ("high", "ultra"))
-"""Pairs of which one eye is refracted and the other is not (the thesis's Table 5.1)."""
-
-_REFLECTED: Final = tuple(("low", b) for b in ("medium", "high", "ultra"))
-_DYNAMIC: Final = tuple((a, "ultra") for a in ("low", "medium", "high"))
 _STEP: Final = (("high", "ultra"),)
 
 
@@ -50,8 +47,21 @@ class Claim:
     measure: Callable[[Evidence], Found]
 
 
-def _beyond_macroscopic(said: pd.DataFrame, code: str, pairs: tuple[tuple[str, str], ...]) -> Found:
-    found = mentioned(said[said["distance"] != "macroscopic"], code, pairs)
+def _refracted(e: Evidence) -> Pairs:
+    """Return the pairs of which one eye alone is refracted (levels: the thesis's Table 5.1)."""
+    return apart(e.tables, "refraction", ("high", "ultra"))
+
+
+def _reflected(e: Evidence) -> Pairs:
+    return apart(e.tables, "reflection", ("medium", "high", "ultra"))
+
+
+def _dynamic(e: Evidence) -> Pairs:
+    return apart(e.tables, "reflection", ("ultra",))
+
+
+def _beyond_macroscopic(e: Evidence, code: str, pairs: Pairs) -> Found:
+    found = mentioned(e.said[e.said["distance"] != "macroscopic"], code, pairs)
     return replace(found, text=found.text.replace("mention it", "mention it beyond macroscopic"))
 
 
@@ -75,7 +85,7 @@ CLAIMS: Final = (
         lambda e: follows(e.tables, "far"),
     ),
     Claim(
-        "Low at far is rated in the middle of the scale",
+        "Low at far is rated 2.5",
         "mean 2.5",
         "5.2.1",
         lambda e: mean_at(e.tables, "far", "low"),
@@ -126,13 +136,13 @@ CLAIMS: Final = (
         "Reflection is what people speak of most",
         "8 of 10: even simple reflection adds volume",
         "5.3",
-        lambda e: mentioned(e.said, "reflection", _REFLECTED),
+        lambda e: mentioned(e.said, "reflection", _reflected(e)),
     ),
     Claim(
         "Few notice that reflections move",
         "2 of 10, both colleagues",
         "5.3",
-        lambda e: mentioned(e.said, "dynamic reflection", _DYNAMIC),
+        lambda e: mentioned(e.said, "dynamic reflection", _dynamic(e)),
     ),
     Claim(
         "High and ultra differ for few at macroscopic",
@@ -144,19 +154,19 @@ CLAIMS: Final = (
         "Moving reflections are seen at macroscopic only",
         "only at the macroscopic distance",
         "5.3",
-        lambda e: _beyond_macroscopic(e.said, "dynamic reflection", _DYNAMIC),
+        lambda e: _beyond_macroscopic(e, "dynamic reflection", _dynamic(e)),
     ),
     Claim(
         "Nearly everyone notices refraction",
         "nearly everyone, on or off",
         "5.3",
-        lambda e: noticed(e.tables, _REFRACTED),
+        lambda e: noticed(e.tables, _refracted(e), where=" where one eye is refracted"),
     ),
     Claim(
         "People speak of refraction or of the pupil",
         "large impact on the pupil's size; no number",
         "5.3",
-        lambda e: mentioned(e.said, "refraction", _REFRACTED),
+        lambda e: mentioned(e.said, "refraction", _refracted(e)),
     ),
     Claim(
         "Half speak of the sclera at macroscopic",

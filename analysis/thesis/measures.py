@@ -91,22 +91,36 @@ def follows(tables: Tables, distance: str = ALL_DISTANCES) -> Found:
     if rows.empty or pd.isna(rows["tau_b"].iloc[0]):
         return NOT_ASKED
     row = rows.iloc[0]
-    tau, low, high, n = (row[name] for name in ("tau_b", "tau_low", "tau_high", "people"))
-    text = f"τ-b {number(tau)} ({_certainty(low, high, int(n))})"
-    return Found(text, float(tau), float(low), float(high), TAU, int(n))
+    tau, low, high = (row[name] for name in ("tau_b", "tau_low", "tau_high"))
+    n = int(row["people"] - row["without_spread"])  # those who have a tau
+    text = f"τ-b {number(tau)} ({_certainty(low, high, n)})"
+    return Found(text, float(tau), float(low), float(high), TAU, n)
 
 
-def noticed(tables: Tables, pairs: Pairs, distance: str | None = None) -> Found:
-    """Return how many people shown one of the pairs (lesser, greater) noticed a difference."""
+def apart(tables: Tables, effect: str, levels: Sequence[str]) -> Pairs:
+    """Return the pairs of LoDs of which one alone has an effect at one of these levels.
+
+    By the levels that the ratings tell; where they tell none, a LoD's name is its level.
+    """
+    rows = tables.ratings[["lod"]].assign(level=tables.ratings.get(effect))
+    if rows["level"].isna().all():
+        rows = rows.assign(level=rows["lod"])
+    level = rows.dropna().drop_duplicates("lod").set_index("lod")["level"]
+    has = level.isin(levels)
+    return [(without, with_it) for without in level[~has].index for with_it in level[has].index]
+
+
+def noticed(tables: Tables, pairs: Pairs, distance: str | None = None, *, where: str = "") -> Found:
+    """Return how many people shown one of the pairs noticed a difference, ``where`` in words."""
     rows = tables.comparisons
     rows = rows[rows["noticed"].notna() & ~rows["is_practice"]]
     rows = _of_pairs(paired(rows, with_equal=False), pairs, distance)
     said = (rows["noticed"] == "yes").groupby(rows["participant"]).any()
-    return _share(said, "noticed a difference")
+    return _share(said, f"noticed a difference{where}")
 
 
 def mentioned(
-    table: pd.DataFrame, code: str, pairs: Pairs = (), distance: str | None = None
+    table: pd.DataFrame, code: str, pairs: Pairs | None = None, distance: str | None = None
 ) -> Found:
     """Return how many people mention a thing; ``table`` is that of ``coding.mentions``.
 
@@ -123,10 +137,10 @@ def _person_means(tables: Tables) -> pd.DataFrame:
     return own.pivot(index="participant", columns=["distance", "lod"], values="rating")
 
 
-def _of_pairs(rows: pd.DataFrame, pairs: Pairs, distance: str | None) -> pd.DataFrame:
+def _of_pairs(rows: pd.DataFrame, pairs: Pairs | None, distance: str | None) -> pd.DataFrame:
     if distance is not None:
         rows = rows[rows["distance"] == distance]
-    if not pairs:
+    if pairs is None:
         return rows
     wanted = {frozenset(pair) for pair in pairs}
     shown = zip(rows["lesser"], rows["greater"], strict=True)

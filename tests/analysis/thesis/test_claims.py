@@ -25,7 +25,7 @@ def test_every_claim_says_what_the_thesis_said_and_where(claims: pd.DataFrame) -
 
 def test_numbers_are_those_of_the_data(claims: pd.DataFrame, thesis_tables: Tables) -> None:
     means = mean_ratings(thesis_tables.ratings, ["distance", "lod"]).set_index(["distance", "lod"])
-    row = claims.loc["Low at far is rated in the middle of the scale"]
+    row = claims.loc["Low at far is rated 2.5"]
     assert row["value"] == pytest.approx(means.loc[("far", "low"), "mean"])
     assert (row["low"], row["high"]) == pytest.approx(
         tuple(means.loc[("far", "low"), ["low", "high"]])
@@ -76,3 +76,33 @@ def test_hardly_any_data_give_no_number_out_of_nothing(given: list[tuple[str, st
     found = claims_table(tables_from({"ratings": frame}))
     assert (found["found"] == "not asked here").sum() >= len(CLAIMS) - 2
     assert not found["found"].str.contains("nan").any()
+
+
+def test_who_notices_refraction_is_asked_of_pairs_that_differ_in_it() -> None:
+    levels = [("low", "low"), ("medium", "high"), ("ultra", "ultra")]  # as in lod.toml
+    ratings = pd.DataFrame(
+        [("A", lod, 3, level) for lod, level in levels],
+        columns=["participant", "lod", "rating", "refraction"],
+    )
+    comparisons = pd.DataFrame(
+        [("A", "1", "near", "medium", "ultra", "yes"), ("B", "1", "near", "low", "medium", "no")],
+        columns=["participant", "trial", "distance", "left_lod", "right_lod", "noticed"],
+    )
+    claim = "Nearly everyone notices refraction"
+    tables = tables_from({"ratings": ratings, "comparisons": comparisons})
+    found = claims_table(tables).set_index("claim").loc[claim, "found"]
+    assert found.startswith("0 of 1 people noticed a difference where one eye is refracted")
+    named = tables_from({"ratings": ratings.drop(columns="refraction"), "comparisons": comparisons})
+    found = claims_table(named).set_index("claim").loc[claim, "found"]
+    assert found.startswith("1 of 1 people")
+    alike = tables_from({"ratings": ratings[1:], "comparisons": comparisons[:1]})
+    assert claims_table(alike).set_index("claim").loc[claim, "found"] == "not asked here"
+
+
+def test_tau_counts_those_who_have_one() -> None:
+    rows = [("A", "low", 1), ("A", "ultra", 4), ("B", "low", 2), ("B", "ultra", 3)]
+    rows += [("C", "low", 2), ("C", "ultra", 2)]
+    ratings = pd.DataFrame(rows, columns=["participant", "lod", "rating"])
+    row = claims_table(tables_from({"ratings": ratings})).set_index("claim").iloc[0]
+    assert row["people"] == 2
+    assert row["found"].endswith("n\xa0=\xa02)")
