@@ -1,9 +1,14 @@
-"""Did a person look? How much better their answers go with what they saw than with another trial.
+"""Did a person look? How likely their answers are if so, if not, and with the scale turned round.
 
-Whoever answers without looking might as well have been shown their trials in another order. So all
-answers of a trial together (both ratings, the comparison, what was noticed) are held against what
-others answered to the same, and the fit against that of the same answers dealt out at random: its
-mean and variance over all orders are known (Hoeffding 1951, Ann. Math. Statist. 22:558).
+Three accounts of all answers of a person are held against each other, by what others answer:
+
+    looked       each trial's answers are those to what it showed
+    did not      each is an answer to any of the trials that the person was shown
+    turned       ratings and comparisons run backwards, what is noticed does not
+
+Each is a probability of the same answers, averaged over how lenient the person may be. Of people
+who looked at most one in k has answers that are k times likelier otherwise, whatever the study
+(Markov's inequality); how far below that it stays is simulated in docs/power.md.
 """
 
 from __future__ import annotations
@@ -12,184 +17,100 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import pandas as pd
-from numpy.typing import NDArray
+from numpy.polynomial.hermite_e import hermegauss
+from scipy.special import logsumexp
 
-from analysis.screening.following import others_means
-from analysis.screening.presented import Floats, Places, Presented, sums
-from analysis.tables.columns import NOTICED
+from analysis.screening.others import Others, others_of
+from analysis.screening.presented import Floats, Places
+from analysis.screening.trials import COMPARED, NONE, NOTED, QUESTIONS, RATED, Trials, trials_of
 from analysis.tables.reading import Tables
 
-LEFT, RIGHT, COMPARED, NOTED = "left", "right", "comparison", "noticed"
-_VALUES: Final = (LEFT, RIGHT, COMPARED)
-_QUESTIONS: Final = (*_VALUES, NOTED)
-_LEAST_SCATTER: Final = 0.05  # of answers about the others' mean: nobody is trusted without bound
+LEAST: Final = 0.1
+"""Weight of a person who surely did not look: still there, and too light to move a verdict."""
+
 _FEWEST_TRIALS: Final = 5
+_FEWEST_PEOPLE: Final = 5  # fewer cannot say what others answer
+_LENIENCE_SD: Final = 0.6  # of people, beside the scatter of all answers, which is 1
+_NODES, _WEIGHTS = hermegauss(7)
+_LENIENCE: Final = _LENIENCE_SD * _NODES
+_LOG_WEIGHTS: Final = np.log(_WEIGHTS / _WEIGHTS.sum())
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Per person (n_people,), in standard deviations of chance; nan where nothing can be told.
+    """Per person (n_people,), logarithms of odds; nan where nothing can be told.
 
-    ``looking`` takes all answers, ``valuing`` ratings and comparisons alone, ``noticing`` what was
-    noticed: 0 is what not looking gives, below zero the scale is turned round.
+    ``looking``: that they looked, against that they did not; ``upright``: that they looked, against
+    that the scale is turned round.
     """
 
     people: tuple[str, ...]
     looking: Floats
-    valuing: Floats
-    noticing: Floats
+    upright: Floats
+
+    def weights(self) -> Floats:
+        """Return 1 / k for whose answers are k times likelier otherwise, at least LEAST."""
+        return weights_of(np.fmin(self.looking, self.upright))
 
 
-@dataclass(frozen=True)
-class _Trials:
-    """Every trial's answers and what others answered, centred on the person's; missing is 0.
-
-    ``given`` and ``expected`` are (n_trials, n_questions); ``precision`` (n_questions,) is one over
-    the scatter of people's answers about the others' mean.
-    """
-
-    people: tuple[str, ...]
-    person: Places
-    given: Floats
-    expected: Floats
-    precision: Floats
+def weights_of(log_odds: Floats) -> Floats:
+    """Return a weight that falls with the odds below 1, from 1 to LEAST; 1 where unknown."""
+    return np.clip(np.exp(np.minimum(np.nan_to_num(log_odds, nan=0.0), 0.0)), LEAST, 1.0)
 
 
 def evidence_of(tables: Tables) -> Evidence:
-    """Return how far everybody's answers go with what they were shown."""
-    trials = _trials(tables)
-    return Evidence(
-        trials.people,
-        looking=_fit(trials, _QUESTIONS),
-        valuing=_fit(trials, _VALUES),
-        noticing=_fit(trials, (NOTED,)),
-    )
+    """Return how everybody's answers go with what they were shown.
 
-
-def _fit(trials: _Trials, questions: tuple[str, ...]) -> Floats:
-    """Return the fit's distance from its mean over all orders, in its standard deviations.
-
-    With a trial's answers y and the others' x, both centred on the person's mean, it is sum y'Wx;
-    over all orders its mean is 0 and its variance sum of (y_s'W x_t)^2 over all s, t / (n - 1).
+    Found twice: whoever seems not to look at first counts less among the others the second time.
     """
-    kept = [_QUESTIONS.index(question) for question in questions]
-    x = trials.expected[:, kept] * trials.precision[kept]
-    y = trials.given[:, kept]
-    count = len(trials.people)
-
-    def total(values: Floats) -> Floats:
-        return sums(trials.person, values, count)
-
-    fit = total((x * y).sum(axis=1))
-    square = np.zeros(count)
-    for i in range(len(kept)):
-        for j in range(len(kept)):
-            square += total(x[:, i] * x[:, j]) * total(y[:, i] * y[:, j])
-    n = total(np.ones(len(x)))
-    known = (n >= _FEWEST_TRIALS) & (square > 1e-9)
-    z = np.full(count, np.nan)
-    np.divide(fit, np.sqrt(square / np.maximum(n - 1, 1)), out=z, where=known)
-    return z
+    trials = trials_of(tables)
+    found = Evidence(trials.people, *np.full((2, len(trials.people)), np.nan))
+    if len(trials.people) < _FEWEST_PEOPLE:
+        return found
+    counts = {kind: trials.counts(kind) for kind in (RATED, COMPARED, NOTED)}
+    for _ in range(2):
+        often = found.weights()[:, None, None]
+        found = _found(trials, {kind: others_of(own * often) for kind, own in counts.items()})
+    return found
 
 
-def _trials(tables: Tables) -> _Trials:
-    rows = pd.concat([_rated(tables), _compared(tables), _noted(tables)], ignore_index=True)
-    rows["expected"] = _others(rows)
-    rows = rows.dropna(subset=["expected"])
-    own = ["participant", "question"]
-    for name in ("given", "expected"):
-        rows[name] = rows[name] - rows.groupby(own)[name].transform("mean")
-    trials = rows.drop_duplicates(["participant", "trial"])
-    person, people = pd.factorize(trials["participant"], sort=True)
-    place = (
-        rows.groupby(["participant", "trial"], sort=False).ngroup().to_numpy(),
-        rows["question"].map({name: i for i, name in enumerate(_QUESTIONS)}).to_numpy(dtype=int),
-    )
-    both = np.zeros((2, len(trials), len(_QUESTIONS)))
-    for table, name in zip(both, ("given", "expected"), strict=True):
-        table[place] = rows[name].to_numpy(dtype=float)
-    return _Trials(
-        people=tuple(map(str, people)),
-        person=np.asarray(person, dtype=np.intp),
-        given=both[0],
-        expected=both[1],
-        precision=_precision(rows),
-    )
+def _found(trials: Trials, others: dict[str, Others]) -> Evidence:
+    odds = np.full((2, len(trials.people)), np.nan)
+    order = np.argsort(trials.person, kind="stable")
+    ends = np.searchsorted(trials.person[order], np.arange(len(trials.people) + 1))
+    for person in range(len(trials.people)):
+        own = order[ends[person] : ends[person + 1]]
+        own = own[(trials.given[own] != NONE).any(axis=1)]
+        if len(own) >= _FEWEST_TRIALS:
+            odds[:, person] = _odds(trials, others, person, own)
+    return Evidence(trials.people, *odds)
 
 
-def _others(rows: pd.DataFrame) -> Floats:
-    """Return what others answered at the same place, each question for itself."""
-    expected = np.full(len(rows), np.nan)
-    for kind in rows["kind"].unique():
-        mine = (rows["kind"] == kind).to_numpy()
-        own = rows[mine]
-        person, people = pd.factorize(own["participant"], sort=True)
-        place, _ = pd.factorize(own["place"])
-        place = np.asarray(place, dtype=np.intp)
-        answers = own["given"].to_numpy(dtype=float)
-        shown = Presented(
-            tuple(map(str, people)), np.asarray(person, dtype=np.intp), place, place, answers
-        )
-        expected[mine] = others_means(shown, place)
-    return expected
+def _odds(
+    trials: Trials, others: dict[str, Others], person: int, own: Places
+) -> tuple[float, float]:
+    """Return both log odds from the trials ``own`` of one person."""
+    count = len(own)
+    as_shown = np.zeros((len(_LENIENCE), count, count))  # a trial's answers, as another's
+    turned = np.zeros((len(_LENIENCE), count))
+    for question, kind in enumerate(QUESTIONS):
+        shares = others[kind].log_shares(person, _LENIENCE if kind == RATED else np.zeros(1))
+        place, given = trials.place[own, question], trials.given[own, question]
+        is_given, last = given != NONE, trials.categories[kind] - 1
+        if not is_given.any():
+            continue
+        answer = np.broadcast_to(np.maximum(given, 0)[:, None], (count, count))
+        if kind == COMPARED:  # as the pair of the trial in the column names it
+            answer = np.where(trials.is_mirrored[own], last - answer, answer)
+        told = shares[:, np.maximum(place, 0), answer]
+        nowhere = np.log(others[kind].shares[person])[answer]  # the other trial did not ask
+        as_shown += np.where(is_given[:, None], np.where(place != NONE, told, nowhere), 0.0)
+        backwards = np.diagonal(answer if kind == NOTED else last - answer)
+        turned += np.where(is_given, shares[:, np.maximum(place, 0), backwards], 0.0)
+    looked = _averaged(np.trace(as_shown, axis1=1, axis2=2))
+    did_not = _averaged((logsumexp(as_shown, axis=2) - np.log(count)).sum(axis=1))
+    return looked - did_not, looked - _averaged(turned.sum(axis=1))
 
 
-def _precision(rows: pd.DataFrame) -> Floats:
-    """Return one over the median person's mean squared distance from the others, by question."""
-    away = (rows["given"] - rows["expected"]) ** 2
-    scatter = away.groupby([rows["kind"], rows["participant"]]).mean().groupby(level=0).median()
-    kinds = {LEFT: "rating", RIGHT: "rating"}
-    found = [float(scatter.get(kinds.get(name, name), np.inf)) for name in _QUESTIONS]
-    return np.asarray(1.0 / np.maximum(found, _LEAST_SCATTER), dtype=float)
-
-
-def _rated(tables: Tables) -> pd.DataFrame:
-    rows = _counted(tables.ratings, "rating")
-    eye = rows["eye"].astype("object").where(rows["eye"].notna(), LEFT)
-    place = rows["distance"].astype(str) + "|" + rows["lod"].astype(str)
-    return _frame(rows, rows["rating"], place=place, question=eye, kind="rating")
-
-
-def _compared(tables: Tables) -> pd.DataFrame:
-    rows = _counted(tables.comparisons, "comparison")
-    place = rows["distance"].astype(str) + "|" + rows["left_lod"] + "|" + rows["right_lod"]
-    return _frame(rows, rows["comparison"], place=place, question=COMPARED, kind=COMPARED)
-
-
-def _noted(tables: Tables) -> pd.DataFrame:
-    rows = _counted(tables.comparisons, "noticed")
-    pairs = zip(rows["distance"], rows["left_lod"], rows["right_lod"], strict=True)
-    place = [f"{distance}|{'|'.join(sorted((left, right)))}" for distance, left, right in pairs]
-    grade = rows["noticed"].astype("object").map(dict(zip(NOTICED, (2, 1, 0), strict=True)))
-    return _frame(rows, grade, place=place, question=NOTED, kind=NOTED)
-
-
-def _counted(rows: pd.DataFrame, question: str) -> pd.DataFrame:
-    return rows[(rows[question].notna() & ~rows["is_practice"]).to_numpy(dtype=bool)]
-
-
-def _frame(
-    rows: pd.DataFrame, given: pd.Series, *, place: object, question: object, kind: str
-) -> pd.DataFrame:
-    """Name the trial; a rating that tells none is a trial of its own."""
-    alone = pd.Series([f"{kind} {i}" for i in range(len(rows))], index=rows.index)
-    return pd.DataFrame(
-        {
-            "participant": rows["participant"].astype(str),
-            "trial": rows["trial"].astype("object").where(rows["trial"].notna(), alone),
-            "given": given.astype(float),
-            "place": place,
-            "question": question,
-            "kind": kind,
-        }
-    )
-
-
-def typical(values: Floats) -> tuple[float, float]:
-    """Return the median person's evidence and people's robust sd; nan, nan for fewer than three."""
-    known: NDArray[np.float64] = values[np.isfinite(values)]
-    if len(known) < 3:
-        return np.nan, np.nan
-    middle = float(np.median(known))
-    return middle, 1.4826 * float(np.median(np.abs(known - middle)))
+def _averaged(log_likelihood: Floats) -> float:
+    return float(logsumexp(log_likelihood + _LOG_WEIGHTS))

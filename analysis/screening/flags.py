@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import log
 from typing import Final
 
 import numpy as np
 import pandas as pd
-
-from analysis.screening.evidence import typical
 
 SHUFFLER, STRAIGHT_LINER, EXTREME = "shuffler", "straight-liner", "extreme"
 INVERTER, SIDE_PICKER, FALSE_ALARMS = "inverter", "side-picker", "false alarms"
@@ -21,11 +20,12 @@ INVERTER, SIDE_PICKER, FALSE_ALARMS = "inverter", "side-picker", "false alarms"
 _FEW: Final = 6  # ratings or comparisons below which a pattern of use says nothing
 _NEARLY_ALL: Final = 0.9
 _FEW_AGAINST: Final = 3
-_CHANCE: Final = 2.326  # of 100 people who do not look, 99 stay below
-_UNLIKE_OTHERS: Final = 3.0  # sds of people below the median person: few honest ones
-_LEAST_SD: Final = 0.5  # of people's evidence: a few may agree by chance
-_TURNED: Final = -1.645
-_TURNED_AND_SEEN: Final = (-0.5, 2.5)  # with differences that are noticed all the same
+NAMED: Final = 20.0
+"""How many times likelier answers must be from somebody who did not look, or who turned the scale.
+
+Of people who looked at most one in 20 comes to that; on simulated people 6 to 8 in 1000 do.
+"""
+_LOG_NAMED: Final = log(NAMED)
 
 
 @dataclass(frozen=True)
@@ -53,30 +53,12 @@ def _is_side_picker(s: pd.DataFrame) -> pd.Series:
 
 
 def _is_inverter(s: pd.DataFrame) -> pd.Series:
-    """Ratings and comparisons run against the others', but differences are seen.
-
-    What is noticed tells it from answers without looking, which may run backwards by chance.
-    """
-    if _is_vague(s["valuing"]):
-        return pd.Series(data=False, index=s.index)
-    least, apart = _TURNED_AND_SEEN
-    expected = (s["noticing"].median() + s["valuing"].median()) / 2
-    is_seen = s["noticing"] - s["valuing"] > max(apart, expected)
-    is_turned = s["valuing"].lt(least) & is_seen
-    return is_turned | (s["valuing"].lt(_TURNED) & s["noticing"].isna())
+    """Turned round fits, and better than answers without looking do."""
+    return s["upright"].lt(-_LOG_NAMED) & s["upright"].lt(s["looking"])
 
 
 def _is_shuffler(s: pd.DataFrame) -> pd.Series:
-    """What not looking gives, and clearly less than others' answers show."""
-    middle, spread = typical(s["looking"].to_numpy(dtype=float))
-    limit = min(_CHANCE, middle - _UNLIKE_OTHERS * max(spread, _LEAST_SD))
-    return s["looking"] < limit
-
-
-def _is_vague(evidence: pd.Series) -> bool:
-    """Say whether even the median person's answers could be chance: then nobody is turned."""
-    middle, _ = typical(evidence.to_numpy(dtype=float))
-    return not middle > -_TURNED
+    return s["looking"].lt(-_LOG_NAMED)
 
 
 def _has_false_alarms(s: pd.DataFrame) -> pd.Series:

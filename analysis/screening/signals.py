@@ -19,7 +19,7 @@ from analysis.tables.reading import Tables
 COLUMNS: Final = (
     *("participant", "ratings", "bias", "inconsistency", "bt500"),
     *("slope", "slope_error", "correlation", "same_share", "ends_share"),
-    *("looking", "valuing", "noticing"),
+    *("looking", "upright"),
     *("compared", "side", "side_share", "against", "against_share"),
     *("catch_pairs", "false_alarms", "alarms_low", "alarms_high"),
     *("presentations", "certified_share"),
@@ -142,8 +142,7 @@ def _of_evidence(tables: Tables) -> pd.DataFrame:
         {
             "participant": pd.Series(found.people, dtype="string"),
             "looking": found.looking,
-            "valuing": found.valuing,
-            "noticing": found.noticing,
+            "upright": found.upright,
         }
     )
 

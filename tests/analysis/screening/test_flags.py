@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from analysis.screening.evidence import LEAST
 from analysis.screening.flags import EXTREME, FALSE_ALARMS, STRAIGHT_LINER, flags_of
 from analysis.screening.signals import COLUMNS, observer_signals
-from analysis.screening.weights import FLAGGED, observer_weights
+from analysis.screening.weights import observer_weights
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.population import POPULATION
 from analysis.simulation.simulated import simulate_tables
@@ -132,7 +133,7 @@ def test_weights_fall_with_inconsistency_and_with_flags_but_never_to_zero() -> N
     )
     signals["inconsistency"] = [0.5, 0.5, 0.5, 0.5, 0.5, 0.9, 0.4]
     weights = observer_weights(signals)
-    assert weights == {"P5": pytest.approx((0.75 / 0.9) ** 2), "X": FLAGGED}
+    assert weights == {"P5": pytest.approx((0.75 / 0.9) ** 2), "X": LEAST}
 
 
 @pytest.mark.parametrize("given", [{}, {"A": [3]}, {"A": [3, 3, 3, 3]}])
