@@ -25,6 +25,11 @@ def percent(share: float) -> str:
     return f"{100 * share:.0f}\N{NO-BREAK SPACE}%" if math.isfinite(share) else "–"
 
 
+def p_value(p: float) -> str:
+    """Write a p value as in "p = 0.03"; very small ones as a bound."""
+    return "p < 0.001" if p < 0.001 else f"p = {number(p, digits=3 if p < 0.1 else 2)}"
+
+
 def milliseconds(value: float) -> str:
     """Write a duration in milliseconds, with decimals only where they matter."""
     return f"{value:.{0 if value >= 100 else 1}f}\N{NO-BREAK SPACE}ms"

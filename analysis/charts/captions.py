@@ -77,6 +77,14 @@ CAPTIONS: Final = {
         "they are at most 100). τ is Kendall's tau-b within people, averaged on Fisher's z "
         "scale, with its 95 % interval; people whose ratings are all alike have none."
     ),
+    "perceived-by-model": (
+        "Perceived against actual LoD after the ordinal mixed model. Above: places on its latent "
+        "scale with 95 % intervals, a line per distance; beside each line its slope per level of "
+        "the LoD and Kendall's τ within people, both with 95 % intervals. A flat line says that "
+        "people do not see what the LoD adds. Below: the share of each rating that the population "
+        "would give, in per cent; black strokes are the shares that were given, added up from "
+        "below."
+    ),
     "realism-by-distance": (
         "Perceived realism by viewing distance for each LoD. The scale runs from completely "
         "unrealistic to almost or completely photorealistic. Symbols are means over people, "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -90,6 +91,11 @@ def apart(places: Sequence[float], *, least: float, low: float, high: float) -> 
         moved[i] = max(low, min(moved[i], limit))
         limit = moved[i] - least
     return moved
+
+
+def wrapped(name: str, width: int) -> str:
+    """Break a name into lines of at most ``width`` characters, at spaces or behind hyphens."""
+    return textwrap.fill(name, width, break_long_words=False)
 
 
 def upright_in(names: Sequence[str]) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -26,7 +27,7 @@ from analysis.correlation import rank_correlations
 from analysis.descriptive import answered, mean_ratings, person_means
 from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.reading import Tables
-from analysis.wording import number
+from analysis.wording import number, p_value
 
 AGAINST_LOD: Final = "Perceived against actual level of detail"
 BY_DISTANCE: Final = "Perceived realism by viewing distance"
@@ -91,23 +92,18 @@ def _panel_columns(count: int) -> int:
     return 2 if count == 4 else min(count, _PANELS_PER_ROW)
 
 
-def _note_correlation(axes: Axes, row: dict[str, Any]) -> None:
+def tau_sentence(row: Mapping[str, Any]) -> str:
+    """Write a distance's tau-b with its interval, p value and n."""
     text = f"τ = {number(row['tau_b'])}"
     if np.isfinite(row["tau_low"]):
-        text += f" [{number(row['tau_low'])}, {number(row['tau_high'])}]"
+        text += f" [{number(row['tau_low'])}, {number(row['tau_high'])}], {p_value(row['tau_p'])}"
     used = row["people"] - row["without_spread"]
-    text += f", n = {used}" if used == row["people"] else f", n = {used} of {row['people']}"
-    axes.text(
-        0.03,
-        0.99,
-        text,
-        transform=axes.transAxes,
-        ha="left",
-        va="top",
-        fontsize=7.5,
-        color=INK,
-        zorder=5,
-    )
+    return text + (f", n = {used}" if used == row["people"] else f", n = {used} of {row['people']}")
+
+
+def _note_correlation(axes: Axes, row: Mapping[str, Any]) -> None:
+    axes.text(0.03, 0.99, tau_sentence(row), transform=axes.transAxes, ha="left", va="top",
+              fontsize=7, color=INK, zorder=5)  # fmt: skip
 
 
 def realism_by_distance(tables: Tables) -> Figure:

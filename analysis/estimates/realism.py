@@ -71,10 +71,10 @@ class Realism:
     def _shares(self, parameters: Floats) -> Floats:
         above = self._above(parameters)
         sure, never = np.ones((*above.shape[:2], 1)), np.zeros((*above.shape[:2], 1))
-        return -np.diff(np.concatenate([sure, above, never], axis=2), axis=2)
+        return np.asarray(-np.diff(np.concatenate([sure, above, never], axis=2), axis=2))
 
     def _ratings(self, parameters: Floats) -> Floats:
-        return self.stimuli.scale[0] + self._above(parameters).sum(axis=2)
+        return np.asarray(self.stimuli.scale[0] + self._above(parameters).sum(axis=2))
 
     def _above(self, parameters: Floats) -> Floats:
         """Return the shares above each threshold (n_draws, n_cells, n_categories - 1).

@@ -1,0 +1,219 @@
+"""Perceived against actual LoD by the ordinal model: the latent scale, and each rating's share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from analysis.charts.material import Material
+from analysis.charts.parts import apart, distance_label, readable_on, records, wrapped
+from analysis.charts.scales import NO_MODEL
+from analysis.charts.style import (
+    INK,
+    PAGE_WIDTH_IN,
+    SMALL,
+    lod_colour,
+    lod_marker,
+    message_figure,
+    new_figure,
+    scale_colours,
+    tidy,
+)
+from analysis.charts.trends import NO_ORDER, tau_sentence
+from analysis.correlation import rank_correlations
+from analysis.descriptive import rating_counts
+from analysis.estimates.realism import Realism
+from analysis.tables.ordering import lod_ranks
+from analysis.wording import number
+
+BY_MODEL: Final = "Perceived against actual LoD, by the model"
+_CENTRAL: Final = (0.025, 0.975)
+_TOP_IN: Final = 2.6
+_PANEL_IN: Final = 2.1
+_MOST_COLUMNS: Final = 4
+_DASHES: Final[tuple[Any, ...]] = ("-", (0, (5, 1.5)), (0, (3, 1.2, 1, 1.2)), (0, (1, 1.2)))
+
+
+def by_model_table(material: Material) -> pd.DataFrame:
+    """Return the latent place and the shares of the ratings per ranked LoD and distance.
+
+    Columns: distance, lod, lod_rank, latent with interval, slope with interval (latent per level of
+    the LoD, least squares over the distance's LoDs), share_1 ... (by the model, population's mean)
+    with intervals, given_1 ... (what was given).
+    """
+    realism = material.inference.realism
+    ranks = lod_ranks(material.tables.ratings)
+    if realism is None:
+        return pd.DataFrame(columns=["distance", "lod"])
+    kept = _ranked(realism, ranks)
+    if not kept:
+        return pd.DataFrame(columns=["distance", "lod"])
+    low = material.tables.scale[0]
+    given = rating_counts(material.tables.ratings, ["distance", "lod"], scale=material.tables.scale)
+    counted = {(row["distance"], row["lod"]): row for row in records(given)}
+    (latent, places), (shares, drawn) = realism.latent(), realism.categories()
+    ends = np.quantile(places, _CENTRAL, axis=0), np.quantile(drawn, _CENTRAL, axis=0)
+    slopes = _slopes(realism, kept, ranks)
+    rows = []
+    for i in kept:
+        distance, lod = realism.cells[i]
+        row: dict[str, object] = {"distance": distance, "lod": lod, "lod_rank": ranks[lod]}
+        row |= {"latent": latent[i], "latent_low": ends[0][0, i], "latent_high": ends[0][1, i]}
+        row |= dict(zip(("slope", "slope_low", "slope_high"), slopes[distance], strict=True))
+        own = counted[distance, lod]
+        for k in range(shares.shape[1]):
+            row |= {f"share_{low + k}": shares[i, k], f"share_{low + k}_low": ends[1][0, i, k]}
+            row |= {f"share_{low + k}_high": ends[1][1, i, k]}
+            row |= {f"given_{low + k}": own[str(low + k)] / own["total"]}
+        rows.append(row | {"ratings": own["total"]})
+    return pd.DataFrame(rows)
+
+
+def _ranked(realism: Realism, ranks: Mapping[str, float]) -> list[int]:
+    """Return the cells with a ranked LoD, at distances where two or more were rated."""
+    own = [i for i, (_, lod) in enumerate(realism.cells) if ranks.get(lod, -1.0) >= 0]
+    at = [realism.cells[i][0] for i in own]
+    return [i for i in own if at.count(realism.cells[i][0]) > 1]
+
+
+def _slopes(
+    realism: Realism, kept: Sequence[int], ranks: Mapping[str, float]
+) -> dict[str, tuple[float, float, float]]:
+    value, draws = realism.latent()
+    found = {}
+    for distance in dict.fromkeys(realism.cells[i][0] for i in kept):
+        own = [i for i in kept if realism.cells[i][0] == distance]
+        x = np.array([ranks[realism.cells[i][1]] for i in own])
+        weights = (x - x.mean()) / ((x - x.mean()) ** 2).sum()
+        low, high = np.quantile(draws[:, own] @ weights, _CENTRAL)
+        found[distance] = (float(value[own] @ weights), float(low), float(high))
+    return found
+
+
+def perceived_by_model(material: Material) -> Figure:
+    """Draw the latent scale, a line per distance, and under it the ratings' shares per LoD."""
+    table = by_model_table(material)
+    if table.empty:
+        reason = NO_MODEL if material.inference.realism is None else NO_ORDER
+        return message_figure(BY_MODEL, reason, is_simulated=material.is_simulated)
+    distances = list(dict.fromkeys(table["distance"]))
+    lods = list(table.drop_duplicates("lod").sort_values("lod_rank")["lod"])
+    columns = min(_MOST_COLUMNS, len(distances))
+    bands = -(-len(distances) // columns)
+    figure = new_figure(
+        PAGE_WIDTH_IN,
+        0.9 + _TOP_IN + _PANEL_IN * bands,
+        BY_MODEL,
+        is_simulated=material.is_simulated,
+    )
+    parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(_TOP_IN, _PANEL_IN * bands + 0.2))
+    _draw_latent(parts[0, 0], material, table, lods=lods)
+    _draw_shares(parts[1, 0], material, table, lods=lods)
+    return figure
+
+
+def _draw_latent(
+    part: FigureBase, material: Material, table: pd.DataFrame, *, lods: Sequence[str]
+) -> None:
+    axes, beside = part.subplots(1, 2, width_ratios=(1.35, 1.0), sharey=True)
+    beside.set_axis_off()
+    tidy(axes)
+    distances = list(dict.fromkeys(table["distance"]))
+    place = {lod: float(i) for i, lod in enumerate(lods)}
+    aside = np.linspace(-0.12, 0.12, len(distances)) if len(distances) > 1 else np.zeros(1)
+    for k, distance in enumerate(distances):
+        own = records(table[table["distance"] == distance])
+        x = [place[row["lod"]] + aside[k] for row in own]
+        axes.plot(x, [row["latent"] for row in own], color=INK, linewidth=1.2,
+                  linestyle=_DASHES[k % len(_DASHES)], zorder=2)  # fmt: skip
+        for at, row in zip(x, own, strict=True):
+            is_zero = row["latent_low"] == row["latent_high"]
+            ends = [] if is_zero else [row["latent_low"], row["latent_high"]]
+            axes.plot([at] * len(ends), ends, color=lod_colour(row["lod"], lods), zorder=3)
+            axes.plot([at], [row["latent"]], marker=lod_marker(row["lod"], lods), zorder=4,
+                      color=lod_colour(row["lod"], lods), markeredgecolor=INK,
+                      markeredgewidth=0.8, markersize=6.5)  # fmt: skip
+    axes.set_xticks(range(len(lods)), [wrapped(lod, 14) for lod in lods])
+    axes.set_xlim(-0.35, len(lods) - 0.65)
+    axes.set_ylabel("latent realism,\nsd of one person's ratings", fontsize=SMALL)
+    _name_lines(beside, material, table)
+
+
+def _name_lines(axes: Axes, material: Material, table: pd.DataFrame) -> None:
+    """Write each distance at its line's end, with how steep the line is and how sure that is."""
+    found = {row["distance"]: row for row in records(rank_correlations(material.tables.ratings))}
+    low, high = axes.get_ylim()
+    last = table.drop_duplicates("distance", keep="last").reset_index(drop=True)
+    rows = records(last)
+    places = apart([row["latent"] for row in rows], least=0.21 * (high - low), low=low, high=high)
+    for k, (row, y) in enumerate(zip(rows, places, strict=True)):
+        slope = f"{number(row['slope'])} per LoD [{number(row['slope_low'])}, "
+        text = f"{row['distance']}: {slope}{number(row['slope_high'])}]"
+        if row["distance"] in found:
+            text += f"\n{tau_sentence(found[row['distance']])}"
+        across = axes.get_yaxis_transform()
+        axes.text(0.1, y, text, transform=across, va="center", fontsize=SMALL - 0.5, color=INK)
+        axes.plot([0.0, 0.08], [y, y], transform=across, color=INK, linewidth=1.2,
+                  linestyle=_DASHES[k % len(_DASHES)])  # fmt: skip
+
+
+def _draw_shares(
+    part: FigureBase, material: Material, table: pd.DataFrame, *, lods: Sequence[str]
+) -> None:
+    low, high = material.tables.scale
+    steps = range(low, high + 1)
+    colours = scale_colours(len(steps))
+    distances = list(dict.fromkeys(table["distance"]))
+    columns = min(_MOST_COLUMNS, len(distances))
+    bands = -(-len(distances) // columns)
+    panels = part.subplots(bands, columns, squeeze=False, sharey=True).ravel()
+    for axes, distance in zip(panels, distances, strict=False):
+        tidy(axes, grid="")
+        own = table[table["distance"] == distance]
+        x = np.array([lods.index(lod) for lod in own["lod"]], dtype=float)
+        bottom = np.zeros(len(own))
+        for step, colour in zip(steps, colours, strict=True):
+            share = own[f"share_{step}"].to_numpy(dtype=float)
+            axes.bar(x, share, bottom=bottom, width=0.78, color=colour, edgecolor="white",
+                     linewidth=0.6)  # fmt: skip
+            for at, under, part_of in zip(x, bottom, share, strict=True):
+                if part_of > 0.085:
+                    axes.text(at, under + part_of / 2, f"{100 * part_of:.0f}", ha="center",
+                              va="center", fontsize=6.5, color=readable_on(colour))  # fmt: skip
+            bottom += share
+        given = own[[f"given_{step}" for step in steps[:-1]]].to_numpy(dtype=float).cumsum(axis=1)
+        start = np.repeat(x + 0.17, given.shape[1])
+        axes.hlines(given.ravel(), start, start + 0.26, color=INK, linewidth=1.1, zorder=3)
+        _finish(axes, distance, material, lods=lods)
+    for axes in panels[len(distances) :]:
+        axes.set_visible(False)
+    for axes in panels[::columns]:
+        axes.set_ylabel("share of ratings", fontsize=SMALL)
+    part.legend(
+        handles=[
+            *(Patch(color=c, label=str(k)) for k, c in zip(steps, colours, strict=True)),
+            Line2D([], [], color=INK, linewidth=1.1, label="as given, added up"),
+        ],
+        loc="outside lower center",
+        ncols=min(7, len(steps) + 1),
+        frameon=False,
+        fontsize=SMALL,
+    )
+
+
+def _finish(axes: Axes, distance: str, material: Material, *, lods: Sequence[str]) -> None:
+    is_long = max(map(len, lods)) > 7 or len(lods) > 4
+    axes.set_xticks(range(len(lods)), lods, rotation=90 if is_long else 0)
+    axes.tick_params(axis="x", length=0, labelsize=SMALL - 1)
+    axes.set_xlim(-0.6, len(lods) - 0.4)
+    axes.set_ylim(0, 1)
+    axes.yaxis.set_major_formatter(lambda value, _: f"{100 * value:.0f} %")
+    label = distance_label(distance, material.tables, joint="\n")
+    axes.set_title(label, fontsize=SMALL, color=INK)
