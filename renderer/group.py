@@ -17,6 +17,7 @@ from renderer.crowd.formation import formation, group_view
 from renderer.frame import Frame
 from renderer.head.sun_shadow import build_light
 from renderer.light import Light
+from renderer.lod.choice import LodPolicy
 from renderer.park.surroundings import Surroundings
 from renderer.picture import Picture, Radiance
 
@@ -36,14 +37,27 @@ class GroupRenderer:
     """
 
     def __init__(
-        self, gl: moderngl.Context, spec: ClipSpec, *, surroundings: Surroundings | None = None
+        self,
+        gl: moderngl.Context,
+        spec: ClipSpec,
+        *,
+        surroundings: Surroundings | None = None,
+        policy: LodPolicy | None = None,
     ) -> None:
+        """``policy`` chooses every eye's LoD by its size instead of the renderer's own."""
         self.gl = gl
         self.spec = spec
         members = formation(spec.crowd)
         self.surroundings = surroundings or Surroundings(gl, spec)
         self.light: Light = build_light(gl, self.surroundings.sky, _Nobody())
-        self.crowd = Crowd(gl, spec, self.light, static_cube=self.surroundings.cube, stage=members)
+        self.crowd = Crowd(
+            gl,
+            spec,
+            self.light,
+            static_cube=self.surroundings.cube,
+            stage=members,
+            policy=policy,
+        )
         self._picture = Picture(gl, (spec.width, spec.height))
         self._draw(0.0, 0.0, 0.0)  # what frames need is made before the first
 

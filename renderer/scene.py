@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import moderngl
 
 from renderer.clip import ClipSpec
-from renderer.crowd.crowd import Crowd
+from renderer.crowd.crowd import PAINTED_CROWD, Crowd
 from renderer.crowd.cube import CrowdCube
 from renderer.eye.kept import Kept
 from renderer.head.head import Head
@@ -48,7 +48,8 @@ def scene_key(spec: ClipSpec) -> SceneKey:
         spec.sun_elevation_deg,
     )
     pose = (spec.gaze_yaw_deg, spec.gaze_pitch_deg, spec.vergence_deg, spec.blink)
-    return around, pose, spec.crowd
+    policy = spec.lod_policy if spec.crowd > PAINTED_CROWD else None  # for people with real eyes
+    return around, pose, (spec.crowd, policy)
 
 
 def build_scene(gl: moderngl.Context, spec: ClipSpec, *, last: Scene | None = None) -> Scene:

@@ -12,6 +12,7 @@ from renderer.context import create_context, identify
 from renderer.exchange.exr import Attribute, write_exr
 from renderer.frame import FrameRenderer
 from renderer.group import GroupRenderer
+from renderer.lod.choice import LodPolicy
 from renderer.picture import EXPOSURE
 from renderer.sources import code_version
 
@@ -25,18 +26,24 @@ def write_still(
     time_s: float = 0.0,
     wireframe: bool = False,
     view: str = "face",
+    policy: LodPolicy | None = None,
 ) -> None:
     """Render one frame into a file; see ``write_frame``.
 
     ``wireframe`` draws the eyes' meshes as lines, which shows their tessellation. ``view`` "crowd"
-    shows the other characters in rows (``renderer.group``) instead of the main one.
+    shows the other characters in rows (``renderer.group``) instead of the main one; ``policy``
+    then chooses their eyes' LoDs.
     """
     gl = create_context()
     try:
-        is_group = view == "crowd"
+        renderer = (
+            GroupRenderer(gl, spec, policy=policy)
+            if view == "crowd"
+            else FrameRenderer(gl, spec, wireframe=wireframe)
+        )
         write_frame(
             path,
-            GroupRenderer(gl, spec) if is_group else FrameRenderer(gl, spec, wireframe=wireframe),
+            renderer,
             azimuth_deg=azimuth_deg,
             elevation_deg=elevation_deg,
             time_s=time_s,

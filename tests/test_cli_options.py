@@ -125,7 +125,8 @@ def test_a_still_takes_the_policy_of_a_file(
     assert drawn[0].lod_policy == own
     capsys.readouterr()
     assert main(["still", "--lod-policy", str(path)]) == 1
-    assert "--lod-policy: says where eyes switch; add --switching" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "--lod-policy: says where eyes switch; add --switching, or --view crowd" in said
     assert main([*given, str(tmp_path / "none.json")]) == 1
     assert "none.json: No such file or directory" in capsys.readouterr().err
     path.write_text("{}")

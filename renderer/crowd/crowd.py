@@ -24,6 +24,8 @@ from renderer.crowd.shares import light_shares
 from renderer.crowd.skinned import SkinnedFigures, eyes_last, joined_triangles
 from renderer.crowd.stage import STAGE, Member, members
 from renderer.light import Light
+from renderer.lod.choice import LodPolicy
+from renderer.lod.policy import default_policy
 from renderer.outlines import BYSTANDER, Outlines
 from renderer.program import build_program
 
@@ -44,13 +46,17 @@ class Crowd:
         *,
         static_cube: StaticCube | None = None,
         stage: Sequence[Member] | None = None,
+        policy: LodPolicy | None = None,
     ) -> None:
         """``stage`` says who stands where instead of ``spec.crowd``; its people have real eyes.
+
+        ``policy`` chooses the LoD of real eyes: else the clip's, else the renderer's own.
 
         ``static_cube`` gives the surroundings at a size; without it all eyes are painted.
         """
         self.gl = gl
         self.light = light
+        self._policy = policy or spec.lod_policy or default_policy()
         cast = members(spec.crowd) if stage is None else stage
         is_large = stage is not None or len(cast) > PAINTED_CROWD
         has_eyes = static_cube is not None and is_large
@@ -232,4 +238,6 @@ class Crowd:
         )
         self._shadows = CrowdShadows(gl, self._meshes)
         if static_cube:
-            self._eyes = CrowdEyes(gl, figures, shares=shares, static_cube=static_cube)
+            self._eyes = CrowdEyes(
+                gl, figures, shares=shares, static_cube=static_cube, policy=self._policy
+            )

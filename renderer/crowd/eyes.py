@@ -24,7 +24,7 @@ from renderer.detail import Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.sunlight import rims_table
 from renderer.light import Light
-from renderer.lod.policy import default_policy
+from renderer.lod.choice import LodPolicy
 
 PAINTED_PX: Final = 4.0  # smaller irises than this are painted: no mesh of a LoD has as few facets
 MOST_EYES: Final = 64  # crowd_eyes.glsl's
@@ -52,9 +52,11 @@ class CrowdEyes:
         *,
         shares: Sequence[Floats],
         static_cube: Callable[[int], moderngl.TextureCube],
+        policy: LodPolicy,
     ) -> None:
         """``shares`` are each figure's vertices' (n, 2) shares of sky and sun."""
         self._gl = gl
+        self._policy = policy
         self._figures = figures
         self._groups = EyeGroups(gl, static_cube)
         bodies = {figure.member.person.body: figure.body for figure in figures}
@@ -87,7 +89,6 @@ class CrowdEyes:
         # Lids stay where they are while the globe turns under them.
         self._facts[:, 5:7] = GLOBE_RADIUS_MM * np.sin(np.radians(aside_deg))
         sizes = iris_px(self._placed, view_matrix=view_matrix, projection=projection, lines=lines)
-        policy = default_policy()
         found = []
         for figure in among:
             pair = sizes[2 * figure : 2 * figure + 2]
@@ -95,7 +96,7 @@ class CrowdEyes:
             if pair.max() < PAINTED_PX:
                 continue
             for eye in np.flatnonzero(pair > 0).tolist():
-                step = policy.steps[policy.choose(float(pair[eye]))]
+                step = self._policy.steps[self._policy.choose(float(pair[eye]))]
                 found.append(DrawnEye(figure, eye, float(pair[eye]), step.lod, step.detail))
         return found
 

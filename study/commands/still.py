@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--lod-policy",
         type=Path,
         metavar="FILE",
-        help="with --switching: another policy, as lod-policy or analyse write it",
+        help="with --switching or --view crowd: another policy, as lod-policy or analyse write it",
     )
     parser.add_argument(
         "--view",
@@ -71,40 +71,48 @@ def run(options: argparse.Namespace) -> int:
         raise CommandError(
             f'{options.out}: unknown kind of picture "{options.out.suffix}"; {" or ".join(KINDS)}'
         )
-    if options.view == "crowd":
+    is_group = options.view == "crowd"
+    if is_group:
         _check_group(options)
-    spec = _by_size(spec_of(options), options)
+    elif options.lod_policy is not None and options.switching is None:
+        raise CommandError("--lod-policy: says where eyes switch; add --switching, or --view crowd")
+    policy = _policy(options.lod_policy)
+    spec = _by_size(spec_of(options), options, policy)
 
     from renderer.still import write_still
 
-    viewpoint = viewpoint_of(options, spec)
-    write_still(options.out, spec, **viewpoint, wireframe=options.wireframe, view=options.view)
+    write_still(
+        options.out,
+        spec,
+        **viewpoint_of(options, spec),
+        wireframe=options.wireframe,
+        view=options.view,
+        policy=policy,
+    )
     print(options.out)
     return 0
 
 
 def _check_group(options: argparse.Namespace) -> None:
     """Give the crowd's view its people; raises CommandError for options it cannot have."""
-    if options.wireframe:
-        raise CommandError("--wireframe: only the main character's eyes; leave out --view crowd")
+    for name, given in (("wireframe", options.wireframe), ("switching", options.switching)):
+        if given:
+            raise CommandError(f"--{name}: only the main character's eyes; leave out --view crowd")
     if options.crowd == 0:
         raise CommandError("--crowd 0: the crowd's view needs people; choose 5, 10 or 30")
     options.crowd = options.crowd or GROUP
 
 
-def _by_size(spec: ClipSpec, options: argparse.Namespace) -> ClipSpec:
+def _by_size(spec: ClipSpec, options: argparse.Namespace, policy: LodPolicy) -> ClipSpec:
     """Put the camera where --iris-px says, and let the LoDs follow from the eyes' size."""
     if options.iris_px is not None:
         if options.frame is not None:
             raise CommandError("--frame: a frame has its own distance; leave --iris-px out")
         spec = replace(spec, motion="approach", approach_end_px=options.iris_px)
     if options.switching is None:
-        if options.lod_policy is not None:
-            raise CommandError("--lod-policy: says where eyes switch; add --switching")
         return spec
     if options.effect or options.only_effect:
         raise CommandError("--switching: takes the levels from a policy; leave effects out")
-    policy = _policy(options.lod_policy)
     return replace(
         spec,
         left=policy.finest,

@@ -10,6 +10,7 @@ import pytest
 from renderer import scene as scenes
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.lod.policy import default_policy
 
 SPEC = ClipSpec(left=Detail(), right=Detail())
 PARTS = ("surroundings", "head", "crowd")
@@ -55,3 +56,16 @@ def test_only_what_a_clip_changes_is_built_anew(
     assert (scene.light is last.light) == (not rebuilt & {"surroundings", "head"})
     assert scene.crowd.light is scene.light
     assert (scene.key == last.key) == (not rebuilt)
+
+
+def test_only_people_with_real_eyes_stand_by_a_clips_policy() -> None:
+    eyes = {"left_switching": "blended", "lod_policy": default_policy()}
+    left = default_policy().finest
+    keys = {
+        crowd: (
+            scenes.scene_key(replace(SPEC, crowd=crowd)),
+            scenes.scene_key(replace(SPEC, crowd=crowd, left=left, **eyes)),
+        )
+        for crowd in (0, 5, 10, 30)
+    }
+    assert [crowd for crowd, (fixed, switching) in keys.items() if fixed != switching] == [10, 30]

@@ -35,11 +35,13 @@ from renderer.scene import Scene
 
 LOW = Detail.uniform("low")
 SPEC = ClipSpec(left=LOW, right=LOW, width=640, height=360, crowd=30)
+LIMITS_PX = zip(STANDARD_LODS, (14.0, 48.0, 200.0, None), strict=True)
+POLICY = LodPolicy(tuple(LodStep(lod, Detail.uniform(lod), px) for lod, px in LIMITS_PX))
 
 
 @pytest.fixture(scope="module")
 def group(gl: moderngl.Context) -> GroupRenderer:
-    return GroupRenderer(gl, SPEC)
+    return GroupRenderer(gl, SPEC, policy=POLICY)
 
 
 @pytest.fixture(scope="module")
@@ -106,10 +108,9 @@ def test_each_eye_has_the_lod_of_its_size_and_one_iris_pool_serves_all(
     group: GroupRenderer,
 ) -> None:
     group.render(time_s=0.5)
-    policy = default_policy()
     assert group.eyes_drawn
     for eye in group.eyes_drawn:
-        assert eye.lod == policy.steps[policy.choose(eye.iris_px)].lod
+        assert eye.lod == POLICY.steps[POLICY.choose(eye.iris_px)].lod
         assert eye.iris_px > 0
     per_figure = {eye.figure for eye in group.eyes_drawn}
     assert len(group.eyes_drawn) == 2 * len(per_figure)
@@ -123,6 +124,10 @@ def test_sizes_follow_the_pictures_lines(gl: moderngl.Context, group: GroupRende
     finer = GroupRenderer(gl, SPEC.resized(1280, 720), surroundings=group.surroundings)
     finer.render(time_s=0.5)
     assert small < len(finer.eyes_drawn) <= 60
+    own = default_policy()  # nobody named another
+    assert {eye.lod for eye in finer.eyes_drawn} == {
+        own.steps[own.choose(eye.iris_px)].lod for eye in finer.eyes_drawn
+    }
 
 
 def test_real_eyes_change_the_picture_only_around_eyes(group: GroupRenderer) -> None:
@@ -155,11 +160,8 @@ def test_the_first_frame_that_needs_a_lod_is_like_those_after_it(group: GroupRen
 
 @pytest.mark.parametrize(("distance_mm", "lod"), [(1300, "medium"), (260, "high"), (90, "ultra")])
 def test_every_lod_draws_the_eyes_of_whoever_comes_near(
-    group: GroupRenderer, monkeypatch: pytest.MonkeyPatch, distance_mm: float, lod: str
+    group: GroupRenderer, distance_mm: float, lod: str
 ) -> None:
-    limits = zip(STANDARD_LODS, (14.0, 48.0, 200.0, None), strict=True)
-    steps = tuple(LodStep(name, Detail.uniform(name), limit) for name, limit in limits)
-    monkeypatch.setattr("renderer.crowd.eyes.default_policy", lambda: LodPolicy(steps))
     crowd = group.crowd
     crowd.pose(1.0)
     placed, _ = crowd._eyes.gaze.placed(crowd._bones)
