@@ -95,11 +95,12 @@ def fit_metric(sums: Sums) -> MetricFit:
     return found if found.log_likelihood > plain.log_likelihood else plain
 
 
-def as_ordinal(found: MetricFit, model: OrdinalModel) -> Floats:
+def as_ordinal(found: MetricFit, model: OrdinalModel, *, contrast: float | None = None) -> Floats:
     """Return the parameters that give a rating k the mass of k - 1/2 to k + 1/2.
 
-    ``model`` has people's leniency, and the design without its intercept as its locations. Its
-    latent unit is the scatter within people.
+    ``model`` has people's leniency, and the design without its intercept as its locations, with a
+    ``contrast`` after them where its predictor has one. Its latent unit is the scatter within
+    people.
     """
     count = model.categories - 2
     return np.concatenate(
@@ -107,6 +108,7 @@ def as_ordinal(found: MetricFit, model: OrdinalModel) -> Floats:
             [(1.5 - found.means[0]) / found.sd],
             np.full(count, -np.log(found.sd)),
             found.means[1:] / found.sd,
+            [] if contrast is None else [contrast],
             [np.log(max(found.sd_people / found.sd, _LEAST_SPREAD))],
         ]
     )

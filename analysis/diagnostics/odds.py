@@ -37,8 +37,8 @@ def odds_tests(
 
     ``factors`` have for every level but the first a column of 0 and 1 (n_stimuli, n_levels - 1),
     which is also among the model's locations. ``statistic`` is twice the ratio's logarithm; ``p``
-    takes it as chi-squared after the share of answers that the locations leave over. A test that the answers do not allow is empty and its
-    ``note`` says why.
+    takes it as chi-squared after the share of answers that the locations leave over. A test that
+    the answers do not allow is empty and its ``note`` says why.
     """
     used, own = _used(model, counts)
     if used.categories < 3:

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from scipy.stats import chi2
 
 from analysis.diagnostics.odds import CATEGORIES, SCALE, odds_tests
 from analysis.models.counts import Counts, count_answers
@@ -36,6 +35,7 @@ def agree(own: pd.DataFrame, both: pd.DataFrame, *, within: float) -> None:
     assert joined["dof"].tolist() == joined["dof_r"].tolist()
 
 
+@pytest.mark.peer
 def test_wine_is_tested_as_r_tests_it() -> None:
     mixed = "random = judge, data = wine, Hess = TRUE, nAGQ = 10, link = 'probit'"
     both = ask_r(
@@ -56,6 +56,7 @@ def test_wine_is_tested_as_r_tests_it() -> None:
     assert found["temp", SCALE] == pytest.approx(both["ratio"][0], abs=2e-3)
 
 
+@pytest.mark.peer
 def test_soup_with_more_levels_is_tested_as_r_tests_it() -> None:
     both = ask_r(
         "s <- subset(soup, !is.na(SURENESS))\n"
