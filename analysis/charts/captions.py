@@ -94,7 +94,8 @@ CAPTIONS: Final = {
     "comparisons-per-pair": (
         "Which LoD of a pair was called more realistic, whichever side it stood on. The share"
         " next to a name preferred it. Lines are 95 % Wilson intervals: above the bar for the"
-        " LoD on the left, below it for the LoD on the right."
+        " LoD on the left, below it for the LoD on the right. Black strokes are where the "
+        "preference scale expects the parts to meet. Side bias is what standing on the right adds."
     ),
     "preference": (
         "The LoDs on a scale of preference, with 95 % intervals: 1 JOD is 75 % preference "
@@ -115,8 +116,9 @@ CAPTIONS: Final = {
     ),
     "comparisons-per-clip": (
         "Which eye was called more realistic in each clip, as the viewer saw it. Lines are 95"
-        " % Wilson intervals: above the bar for the left eye, below it for the right. More "
-        "than 24 clips are taken together by pairing of LoDs, left and right."
+        " % Wilson intervals: above the bar for the left eye, below it for the right. Black "
+        "strokes are where the preference scale expects the parts to meet, side bias included. "
+        "More than 24 clips are taken together by pairing of LoDs, left and right."
     ),
     "noticed-per-clip": (
         "Whether anything missing or different was noticed between the eyes, clip by clip. "

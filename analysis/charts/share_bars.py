@@ -1,8 +1,8 @@
-"""Charts of shares: which eye was called more realistic, and who noticed a difference.
+"""Bars of shares: how a row of answers is drawn, whatever the question was.
 
 Each row is a bar of all answers. Comparisons stand between the names of the two LoDs, so the part
 next to a name is the share that preferred it. Lines beside a bar are Wilson's intervals: above it
-for the first answer, below it for the last.
+for the first answer, below it for the last. Black strokes across it are what a model expects.
 """
 
 from __future__ import annotations
@@ -15,137 +15,77 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from analysis.charts.parts import clip_label, grouped_places, head_groups, readable_on, records
-from analysis.charts.style import (
-    CHOICE_COLOURS,
-    INK,
-    NOTICE_COLOURS,
-    PAGE_WIDTH_IN,
-    SMALL,
-    message_figure,
-    new_figure,
-    tidy,
-)
-from analysis.shares import (
-    OUTCOMES,
-    PAIR_OUTCOMES,
-    PAIRED,
-    clips_or_pairings,
-    comparison_shares,
-    notice_shares,
-    pair_comparison_shares,
-    pair_notice_shares,
-)
-from analysis.tables.columns import NOTICED
+from analysis.charts.style import INK, PAGE_WIDTH_IN, SMALL, message_figure, new_figure, tidy
+from analysis.shares import PAIRED
 from analysis.tables.reading import Tables
 
-CLIP_COMPARED: Final = "Which eye is more realistic, per clip"
-PAIR_COMPARED: Final = "Which LoD is more realistic, per pair"
-CLIP_NOTICED: Final = "Difference noticed, per clip"
-PAIR_NOTICED: Final = "Difference noticed, per pair"
 _ROW_IN: Final = 0.36
 _MOST_IN: Final = 7.4  # all rows together: a page with its caption
-NO_COMPARISONS: Final = "No comparison of the two eyes has been answered yet."
-NO_NOTICES: Final = "Whether a difference was noticed has not been answered yet."
+_HALF: Final = 0.28  # of a bar's height, in rows
 
 
 @dataclass(frozen=True)
-class _Look:
-    """What a chart of shares shows: its title, its answers in order, and their names."""
+class Look:
+    """What a chart of shares shows: its title, its answers in order, their names and colours.
+
+    ``sides`` are the columns of the two LoDs; ``empty`` says why there is nothing to draw and
+    ``note`` stands below the axis.
+    """
 
     title: str
     answers: Sequence[str]
     names: Sequence[str]
     colours: Sequence[str]
+    sides: tuple[str, str]
+    empty: str
     is_two_sided: bool
+    note: str = ""
 
 
-def comparisons_per_clip(tables: Tables) -> Figure:
-    """Draw, per clip, how many called the left eye, neither, or the right eye more realistic."""
-    look = _Look(
-        CLIP_COMPARED,
-        OUTCOMES,
-        ("left eye", "no difference noticed", "right eye"),
-        CHOICE_COLOURS,
-        True,
-    )
-    shares = comparison_shares(clips_or_pairings(tables.comparisons))
-    return _draw(shares, tables, look, ("left_lod", "right_lod"), NO_COMPARISONS)
-
-
-def comparisons_per_pair(tables: Tables) -> Figure:
-    """Draw, per pair of LoDs, how many called the lesser, neither or the greater more real."""
-    look = _Look(
-        PAIR_COMPARED,
-        PAIR_OUTCOMES,
-        ("lesser LoD", "no difference noticed", "greater LoD"),
-        CHOICE_COLOURS,
-        True,
-    )
-    shares = pair_comparison_shares(tables.comparisons)
-    return _draw(shares, tables, look, ("lesser", "greater"), NO_COMPARISONS)
-
-
-def noticed_per_clip(tables: Tables) -> Figure:
-    """Draw, per clip, how many noticed anything missing or different between the eyes."""
-    look = _Look(CLIP_NOTICED, NOTICED, _NOTICE_NAMES, NOTICE_COLOURS, False)
-    shares = notice_shares(clips_or_pairings(tables.comparisons))
-    return _draw(shares, tables, look, ("left_lod", "right_lod"), NO_NOTICES)
-
-
-def noticed_per_pair(tables: Tables) -> Figure:
-    """Draw, per pair of LoDs, how many noticed a difference; equal LoDs show false alarms."""
-    look = _Look(PAIR_NOTICED, NOTICED, _NOTICE_NAMES, NOTICE_COLOURS, False)
-    shares = pair_notice_shares(tables.comparisons)
-    return _draw(shares, tables, look, ("lesser", "greater"), NO_NOTICES)
-
-
-_NOTICE_NAMES: Final = ("yes", "not sure", "no")
-
-
-def _draw(
-    shares: pd.DataFrame, tables: Tables, look: _Look, sides: tuple[str, str], empty: str
-) -> Figure:
+def share_chart(shares: pd.DataFrame, tables: Tables, look: Look) -> Figure:
+    """Draw a bar per clip or pair; a column ``expected`` is what a model expects."""
     if shares.empty:
-        return message_figure(look.title, empty, is_simulated=tables.is_simulated)
-    keys = [name for name in ("distance", "clip", *sides) if name in shares]
-    rows = [own for _, own in shares.groupby(keys, sort=False, dropna=False)]
-    first = [records(own)[0] for own in rows]
-    distances = [str(row["distance"]) for row in first]
+        return message_figure(look.title, look.empty, is_simulated=tables.is_simulated)
+    keys = [name for name in ("distance", "clip", *look.sides) if name in shares]
+    rows = [records(own) for _, own in shares.groupby(keys, sort=False, dropna=False)]
+    distances = [str(own[0]["distance"]) for own in rows]
     places = grouped_places(distances)
     row_in = min(_ROW_IN, _MOST_IN / places[-1])
-    figure = new_figure(
-        PAGE_WIDTH_IN, 1.45 + row_in * places[-1], look.title, is_simulated=tables.is_simulated
-    )
+    height = 1.45 + row_in * places[-1] + (0.15 if look.note else 0.0)
+    figure = new_figure(PAGE_WIDTH_IN, height, look.title, is_simulated=tables.is_simulated)
     axes = figure.subplots()
     tidy(axes, grid="x")
-    for y, own in zip(places, rows, strict=True):
-        answers = {row["answer"]: row for row in records(own)}
-        _draw_bar(axes, y, answers, look)
-    names = [_names(row, sides, look) for row in first]
+    answers = [{str(row["answer"]): row for row in own} for own in rows]
+    _draw_bars(axes, places, answers, look, size=min(7.5, 0.95 * 144 * _HALF * row_in))
+    is_modelled = _draw_expected(axes, places, answers, look)
+    names = [_names(own[0], look) for own in rows]
     axes.set_yticks(places, [left for left, _ in names])
     for y, (_, right) in zip(places, names, strict=True):
-        _write_beside(axes, y, right)
+        axes.text(1.012, y, right, transform=axes.get_yaxis_transform(), ha="left", va="center",
+                  fontsize=SMALL, color=INK)  # fmt: skip
     head_groups(axes, places, distances, tables)
     axes.set_xlim(0, 1)
     axes.set_xticks(np.linspace(0, 1, 5), [f"{p} %" for p in (0, 25, 50, 75, 100)])
-    axes.set_xlabel(
-        "share of answers; lines: 95 % intervals of the shares in their colour", fontsize=SMALL
-    )
+    label = "share of answers; lines: 95 % intervals of the shares in their colour"
+    axes.set_xlabel(f"{label}\n{look.note}" if look.note else label, fontsize=SMALL)
+    handles: list[Patch | Line2D] = [
+        Patch(color=c, label=n) for n, c in zip(look.names, look.colours, strict=True)
+    ]
+    if is_modelled:
+        handles.append(Line2D([], [], color=INK, marker="|", markersize=9, markeredgewidth=1.6,
+                              linestyle="", label="by the model"))  # fmt: skip
     figure.legend(
-        handles=[Patch(color=c, label=n) for n, c in zip(look.names, look.colours, strict=True)],
-        loc="outside lower center",
-        ncols=3,
-        frameon=False,
-        fontsize=SMALL,
+        handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=SMALL
     )
     return figure
 
 
-def _names(row: Mapping[str, Any], sides: tuple[str, str], look: _Look) -> tuple[str, str]:
-    left, right = str(row[sides[0]]), str(row[sides[1]])
+def _names(row: Mapping[str, Any], look: Look) -> tuple[str, str]:
+    left, right = str(row[look.sides[0]]), str(row[look.sides[1]])
     has_clip = "clip" in row and PAIRED not in str(row["clip"])
     clip = f"{clip_label(str(row['clip']))}:  " if has_clip else ""
     count = f"n = {row['total']}"
@@ -155,45 +95,45 @@ def _names(row: Mapping[str, Any], sides: tuple[str, str], look: _Look) -> tuple
     return f"{clip}{pair}", count
 
 
-def _write_beside(axes: Axes, y: float, text: str) -> None:
-    axes.text(
-        1.012,
-        y,
-        text,
-        transform=axes.get_yaxis_transform(),
-        ha="left",
-        va="center",
-        fontsize=SMALL,
-        color=INK,
-    )
+Answered = Sequence[Mapping[str, Mapping[str, Any]]]
 
 
-def _draw_bar(axes: Axes, y: float, answers: Mapping[str, Mapping[str, Any]], look: _Look) -> None:
-    start = 0.0
+def _draw_bars(
+    axes: Axes, places: Sequence[float], rows: Answered, look: Look, *, size: float
+) -> None:
+    start = np.zeros(len(rows))
     for answer, colour in zip(look.answers, look.colours, strict=True):
-        row = answers[answer]
-        axes.barh(y, row["share"], left=start, height=0.56, color=colour, edgecolor="white")
-        if row["share"] > 0.04:
-            axes.text(
-                start + row["share"] / 2,
-                y,
-                f"{row['count']}",
-                ha="center",
-                va="center",
-                fontsize=7.5,
-                color=readable_on(colour),
-            )
-        start += row["share"]
-    first, last = answers[look.answers[0]], answers[look.answers[-1]]
-    _draw_interval(axes, y - 0.37, first["low"], first["high"], colour=look.colours[0])
+        share = np.array([row[answer]["share"] for row in rows])
+        axes.barh(places, share, left=start, height=2 * _HALF, color=colour, edgecolor="white")
+        ink = readable_on(colour)
+        for y, x, row in zip(places, start + share / 2, rows, strict=True):
+            if row[answer]["share"] > 0.04:
+                axes.text(x, y, f"{row[answer]['count']}", ha="center", va="center", fontsize=size,
+                          color=ink, zorder=5)  # fmt: skip
+        start += share
+    at = np.array(places)
+    ends = np.array([[row[look.answers[0]][end] for end in ("low", "high")] for row in rows])
+    _draw_intervals(axes, at - 0.37, ends, colour=look.colours[0])
     if look.is_two_sided:
-        _draw_interval(axes, y + 0.37, 1 - last["high"], 1 - last["low"], colour=look.colours[-1])
+        last = np.array([[row[look.answers[-1]][end] for end in ("high", "low")] for row in rows])
+        _draw_intervals(axes, at + 0.37, 1 - last, colour=look.colours[-1])
 
 
-def _draw_interval(axes: Axes, y: float, low: float, high: float, *, colour: str) -> None:
-    """Draw an interval beside the bar, in the colour of the share it belongs to."""
-    axes.plot([low, high], [y, y], color=colour, linewidth=1.3, zorder=3, clip_on=False)
-    for end in (low, high):
-        axes.plot(
-            [end, end], [y - 0.08, y + 0.08], color=colour, linewidth=1.3, zorder=3, clip_on=False
-        )
+def _draw_intervals(axes: Axes, y: np.ndarray, ends: np.ndarray, *, colour: str) -> None:
+    """Draw each row's interval beside its bar, in the colour of the share it belongs to."""
+    style: dict[str, Any] = {"colors": colour, "linewidth": 1.3, "zorder": 3, "clip_on": False}
+    axes.hlines(y, ends[:, 0], ends[:, 1], **style)
+    axes.vlines(ends.ravel(), np.repeat(y - 0.08, 2), np.repeat(y + 0.08, 2), **style)
+
+
+def _draw_expected(axes: Axes, places: Sequence[float], rows: Answered, look: Look) -> bool:
+    """Draw where the model expects the parts of each bar to meet; say whether there was any."""
+    if any("expected" not in own for row in rows for own in row.values()):
+        return False
+    share = np.array([[row[answer]["expected"] for answer in look.answers[:-1]] for row in rows])
+    x, y = np.cumsum(share, axis=1), np.repeat(places, share.shape[1])
+    known = np.isfinite(x.ravel())
+    for colour, width in (("white", 3.0), (INK, 1.5)):
+        axes.vlines(x.ravel()[known], y[known] - _HALF, y[known] + _HALF, colors=colour,
+                    linewidth=width, zorder=4)  # fmt: skip
+    return bool(known.any())
