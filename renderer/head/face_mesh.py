@@ -27,6 +27,7 @@ from renderer.head.lid_socket import Socket
 
 FINE_BOX_MM: Final = ((-86.0, -52.0, -62.0), (86.0, 50.0, 60.0))  # what close views can show
 LOWEST_MM: Final = -215.0  # below it the collar hides the neck
+SHOULDER_MM: Final = (75.0, -160.0)  # further out and down the sweater may lie below the skin
 SEAM_LID: Final = 0.08  # share of lid below which a patch takes on the face's light
 SEAM_SINK_MM: Final = 0.12  # the patches' last rings dive under the face
 SOCKET_MM: Final = 18.2  # around MakeHuman's globe: everything nearer is socket or inner lid
@@ -171,8 +172,8 @@ def _head_cage(body: Figure) -> tuple[Floats, Indices]:
     """Return head and neck with the lips' mask as a fourth column, mouth's inside taken away."""
     mesh = body.mesh
     quads = mesh.quads[mesh.quads_of("body")]
-    centre = body.vertices_mm[quads].mean(axis=1)
-    is_head = (centre[:, 1] > LOWEST_MM) & (np.abs(centre[:, 0]) < 150.0)
+    x, y, _ = body.vertices_mm[quads].mean(axis=1).T
+    is_head = (y > LOWEST_MM) & ((np.abs(x) < SHOULDER_MM[0]) | (y > SHOULDER_MM[1]))
     column = np.column_stack([body.vertices_mm, _mask(mesh, "lips")])
     return column, quads[is_head]
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import moderngl
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from renderer.camera import INTEROCULAR_MM, Matrix, look_at, perspective
 from renderer.clip import ClipSpec
@@ -107,6 +108,15 @@ def test_the_sweater_covers_the_body_below_the_neck() -> None:
     assert garment.points_mm[:, 1].min() < -600
     lowest_skin = face_mesh().coarse.points_mm[:, 1].min()
     assert garment.points_mm[:, 1].max() > lowest_skin + 40
+
+
+def test_no_skin_comes_through_the_sweater() -> None:
+    garment, skin = sweater(figure()), face_mesh().coarse.points_mm
+    hidden = skin[skin[:, 1] < -150.0]
+    _, nearest = cKDTree(garment.points_mm).query(hidden)
+    outwards = ((hidden - garment.points_mm[nearest]) * garment.normals[nearest]).sum(axis=1)
+    assert len(hidden) > 100
+    assert outwards.max() < -1.0
 
 
 def test_hair_grows_inside_the_hairline_only() -> None:
