@@ -97,7 +97,8 @@ def _converted(row: Sequence[Any], out: tuple[tuple[int, Convert], ...]) -> Sequ
         return row
     cells = list(row)
     for place, convert in out:
-        cells[place] = convert(cells[place])
+        if cells[place] is not None:
+            cells[place] = convert(cells[place])
     return cells
 
 

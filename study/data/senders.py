@@ -38,6 +38,12 @@ _KEPT: Final = Prepared(
 _SITTING: Final = Prepared(
     update(_S).where(_S.c.id == bindparam("sitting")).values(last_seen_at=bindparam("now"))
 )
+_LATEST: Final = Prepared(
+    select(_S.c.id.label("sitting_id"), _S.c.last_seen_at.label("seen_at"))
+    .where(_S.c.participant_id == bindparam("who"))
+    .order_by(_S.c.number.desc())
+    .limit(1)
+)
 
 
 def by_token(token: str) -> tuple[By, str]:
@@ -86,3 +92,9 @@ def locking_again(participant: Participant) -> Errand[Any]:
     if row is None or row.public_id != participant.public_id:
         raise WithdrawnError("this participant has withdrawn; nothing more is stored")
     return row
+
+
+def seeing(who: Any, now: datetime) -> Errand[None]:
+    """Note that somebody is here; ``who`` is their row, held for writing."""
+    sittings = yield _LATEST, {"who": who.id}
+    yield from touching(who, sittings[0], now)

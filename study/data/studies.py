@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from sqlalchemy import ColumnElement, func, select
@@ -32,6 +32,7 @@ class Study:
     title: str
     definition: StudyDefinition
     source: StudyDefinition | None = None
+    _spoken: dict[str, Study] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def languages(self) -> tuple[str, ...]:
@@ -40,9 +41,13 @@ class Study:
 
     def spoken(self, language: str) -> Study:
         """Return the study with the words of one of its languages; of its own for any other."""
-        source = self.source or self.definition
-        definition = source.in_language(language)
-        return replace(self, title=definition.title, definition=definition, source=source)
+        if language not in self._spoken:
+            source = self.source or self.definition
+            definition = source.in_language(language)
+            self._spoken[language] = replace(
+                self, title=definition.title, definition=definition, source=source
+            )
+        return self._spoken[language]
 
 
 def register(db: Database, definition: StudyDefinition) -> Study:

@@ -9,6 +9,7 @@ beside it. On PostgreSQL every statement waits for the server, so the whole batc
 from __future__ import annotations
 
 import asyncio
+import time
 from collections.abc import AsyncIterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
@@ -25,6 +26,10 @@ from study.data.errands import Eyes, Make, Outcome
 T = TypeVar("T")
 MOST: Final = 100
 """Errands in one transaction: on SQLite everybody else waits for so many at the longest."""
+GATHER_S: Final = 0.01
+"""So long a transaction waits at most for those whose requests have come but are not read yet."""
+QUIET_TURNS: Final = 3
+"""Turns of the event loop in which nobody joined: a request takes two to be read."""
 
 
 @dataclass
@@ -85,6 +90,7 @@ class Writer:
         batch = self._batch_here if self._db.group else self._batch_beside
         try:
             while line.waiting:
+                await _gather(line)
                 await batch(line)
         finally:
             line.task = None
@@ -128,6 +134,18 @@ class Writer:
             await loop.run_in_executor(line.beside, own.__exit__, *how)
             raise
         await loop.run_in_executor(line.beside, own.__exit__, None, None, None)
+
+
+async def _gather(line: _Line) -> None:
+    """Let those join who are just being read: beginning and ending costs as much as ten answers.
+
+    Where little comes this waits for some turns of the loop, which take microseconds.
+    """
+    latest, count, quiet = time.monotonic() + GATHER_S, len(line.waiting), 0
+    while quiet < QUIET_TURNS and count < MOST and time.monotonic() < latest:
+        await asyncio.sleep(0)
+        quiet = quiet + 1 if len(line.waiting) == count else 0
+        count = len(line.waiting)
 
 
 def _tell(

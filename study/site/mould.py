@@ -33,10 +33,9 @@ class Mould:
 
     def fill(self, values: Mapping[str, object]) -> str:
         """Return the page; values are escaped unless they are marked safe."""
-        between = {name: str(escape(value)) for name, value in values.items()}
-        pieces = [self.parts[0]]
-        for name, part in zip(self.names, self.parts[1:], strict=True):
-            pieces += (between[name], part)
+        pieces = list(self.parts)
+        for n, name in enumerate(self.names):
+            pieces[n] += str(escape(values[name]))
         return "".join(pieces)
 
 

@@ -14,6 +14,7 @@ from study.data import answers, events, jobs, participants, progress
 from study.data.errands import Errand
 from study.data.progress import Step
 from study.data.refusals import NotWatchedError
+from study.data.senders import seeing
 from study.data.trials import Trial
 from study.design.definition import StudyDefinition
 from study.design.questions import AnswerError, Question
@@ -41,7 +42,7 @@ async def trial(request: Request, position: int) -> Response:
     if step.trial is None or step.trial.position != position:
         return redirect(step_url(step))
     if here.db.now() - who.last_seen_at >= participants.SEEN_AGAIN:
-        await run_in_threadpool(participants.seen, here.db, visitor.participant)
+        await here.writer.write(partial(_see, request, here, asker))
     record = here.clips.record(step.trial.clip_id)
     if record is None:
         return await run_in_threadpool(_missing, request, here, visitor, step.trial)
@@ -54,6 +55,11 @@ def _look(
     who = yield from found(request, here, asker)
     stood = yield from progress.standing(who, study_of(here, who).definition)
     return who, stood
+
+
+def _see(request: Request, here: Place, asker: Asker) -> Errand[None]:
+    who = yield from locked(request, asker)
+    yield from seeing(who, here.db.now())
 
 
 def _missing(request: Request, here: Place, visitor: Visitor, found: Trial) -> Response:
