@@ -23,9 +23,9 @@ test: ## set up what is missing, then format, lint, types and tests
 	$(PYTHON) -m mypy
 	$(PYTHON) -m pytest -m "not long" -n $(JOBS) --dist loadfile $(ARGS)
 
-test-long: ## the long simulations
-	@deploy/setup test
-	$(PYTHON) -m pytest -m long $(ARGS)
+test-long: ## long simulations and storms, other browsers, R as a peer; what needs more than make test
+	@deploy/setup test-long
+	$(PYTHON) -m pytest -m "long or peer" $(ARGS)
 
 test-fresh: ## prove both set-ups in an empty Debian (root and debootstrap)
 	@deploy/fresh

@@ -78,6 +78,16 @@ def test_without_apt_the_tests_browser_is_named(checkout: Path) -> None:
     assert "Could not install: chromium\nThere is no apt-get here" in done.stderr
 
 
+def test_without_root_one_line_names_what_the_long_tests_lack(checkout: Path) -> None:
+    program(checkout, "id", "echo 1000")
+    done = set_up(checkout, "test-long")
+    assert done.returncode == 1
+    [line] = [line for line in done.stderr.splitlines() if line.startswith("Could not install: ")]
+    browsers = {"chromium", "firefox-esr", "chromium-driver", "webkit2gtk-driver", "xvfb"}
+    assert browsers | {"r-cran-ordinal"} <= set(line.split())
+    assert done.stderr.endswith("Then run make test-long again.\n")
+
+
 def test_with_root_it_updates_and_installs_only_what_is_missing(checkout: Path) -> None:
     program(checkout, "id", "echo 0")
     program(checkout, "apt-get", f'echo "$@" >> {checkout}/asked')
@@ -117,7 +127,9 @@ def test_a_second_run_does_nothing(checkout: Path) -> None:
 def test_an_unknown_purpose_is_refused(checkout: Path) -> None:
     done = set_up(checkout, "studdy")
     assert done.returncode == 2
-    assert done.stderr == 'deploy/setup: unknown purpose "studdy"; choose study or test\n'
+    assert (
+        done.stderr == 'deploy/setup: unknown purpose "studdy"; choose study, test or test-long\n'
+    )
 
 
 def locked(name: str) -> dict[str, str]:

@@ -28,6 +28,7 @@ def fitted(ratings: pd.DataFrame) -> Realism:
     return realism_of(rows, np.random.default_rng(3), scale=(1, 5))
 
 
+@pytest.mark.peer
 def test_wine_has_the_log_likelihood_and_aic_that_r_finds() -> None:
     wine = ask_r(
         "f <- clm(rating ~ temp * contact, data = wine, link = 'probit')\n"

@@ -15,11 +15,13 @@ import pytest
 def lacks_r() -> str:
     """Return why R's ordinal cannot be asked, or nothing."""
     if shutil.which("Rscript") is None:
-        return "R is not installed (Debian: r-cran-ordinal)"
+        return "R is not installed; make test-long installs r-cran-ordinal"
     trial = subprocess.run(
         ["Rscript", "-e", "library(ordinal)"], capture_output=True, text=True, check=False
     )
-    return "" if trial.returncode == 0 else "R lacks the package ordinal (Debian: r-cran-ordinal)"
+    return (
+        "" if trial.returncode == 0 else "R lacks ordinal; make test-long installs r-cran-ordinal"
+    )
 
 
 def ask_r(script: str) -> pd.DataFrame:

@@ -45,6 +45,7 @@ def rated(
     return OrdinalModel(Linear(location, terms)), counts, truth
 
 
+@pytest.mark.peer
 @pytest.mark.parametrize("link", [PROBIT, LOGIT])
 def test_wine_is_fitted_as_r_fits_it(link: Link) -> None:
     wine = ask_r(
@@ -66,6 +67,7 @@ def test_wine_is_fitted_as_r_fits_it(link: Link) -> None:
     assert found.model.thresholds(found.parameters)[3] == pytest.approx(own["theta4"], abs=1e-3)
 
 
+@pytest.mark.peer
 def test_soup_is_fitted_as_r_fits_it() -> None:
     soup = ask_r(
         "s <- subset(soup, !is.na(SURENESS))\n"

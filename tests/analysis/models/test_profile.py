@@ -20,6 +20,7 @@ sys.path.append(str(Path(__file__).parent))
 from peers import ask_r
 
 
+@pytest.mark.peer
 @pytest.mark.parametrize("link", [PROBIT, LOGIT])
 def test_intervals_of_wine_are_those_of_r(link: Link) -> None:
     name = {"probit": "probit", "logit": "logit"}[link.name]
