@@ -25,6 +25,13 @@ CAPTIONS: Final = {
         "means of ratings with t intervals. Where grey and coloured disagree, trust the model"
         " with care."
     ),
+    "joint-scale": (
+        "Ratings and comparisons fitted together: of a pair's two eyes the comparison says the "
+        "same difference as the ratings, in units of its own (the axis on top). Coloured: both "
+        "together; grey: the ratings alone; lines are 95 % intervals. Where both agree and the "
+        "coloured interval is shorter, comparisons have told more than ratings alone. Drawn only "
+        "where ratings and comparisons link everything that was shown."
+    ),
     "realism-against-cost": (
         "Realism (mean rating of the population by the model) against what a frame costs, "
         "with 95 % intervals of both, one panel per distance. The line joins LoDs that no "

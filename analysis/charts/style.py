@@ -8,6 +8,7 @@ LoDs differ in marker too.
 from __future__ import annotations
 
 import io
+import textwrap
 from collections.abc import Sequence
 from typing import Any, Final, Literal
 
@@ -43,6 +44,7 @@ SMALL: Final = 8.0
 NORMAL: Final = 9.0
 LARGE: Final = 11.0
 PNG_DPI: Final = 160
+_MESSAGE_CHARS: Final = 84  # a line across a figure that only says something
 
 
 def lod_colour(lod: str, lods: Sequence[str]) -> str:
@@ -107,10 +109,11 @@ def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: b
 
 def message_figure(title: str, message: str, *, is_simulated: bool = False) -> Figure:
     """Return a figure that says why there is nothing to draw."""
-    figure = new_figure(6.5, 1.3, title, is_simulated=is_simulated)
-    figure.text(
-        0.5, 0.42, message, ha="center", va="center", fontsize=NORMAL, color=QUIET, wrap=True
-    )
+    lines = textwrap.wrap(message, _MESSAGE_CHARS)
+    height = 0.85 + 0.17 * len(lines)
+    figure = new_figure(6.5, height, title, is_simulated=is_simulated)
+    figure.text(0.5, 0.3 / height, "\n".join(lines), ha="center", va="bottom", fontsize=NORMAL,
+                color=QUIET)  # fmt: skip
     return figure
 
 

@@ -53,6 +53,10 @@ class Joint:
         """Return the cells' places (n_cells,), the first at 0, and draws (n_draws, n_cells)."""
         return self._places(self.fit.parameters[None])[0], self._places(self.draws)
 
+    def latent_alone(self) -> tuple[Floats, Floats]:
+        """Return the places and draws of them by the ratings alone, as ``latent`` does."""
+        return self._places(self.alone.parameters[None])[0], self._places(self.alone_draws)
+
     def _places(self, parameters: Floats) -> Floats:
         at = self.alone.model.slices["location"].start
         own = parameters[:, at : at + len(self.cells) - 1]
