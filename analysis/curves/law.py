@@ -1,9 +1,6 @@
-"""The law of sizes: a difference shows as A Phi((x - m) / w), x the log2 of the iris's size.
+"""The law of sizes: each LoD's difference from the best grows with the iris's size, in some shape.
 
-Every LoD has its own greatest difference A, size m at which half of it shows, and octaves w over
-which it comes; where a handful of sizes says little of them, the priors do: w is about one octave
-for what is noticed, and about two, but less certain, for what looks less real. What a person
-answers given that difference is an ordinal model, with the person's own criterion.
+What a person answers given that difference is an ordinal model, with the person's own criterion.
 """
 
 from __future__ import annotations
@@ -11,37 +8,39 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import reduce
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
+from analysis.curves.shapes import Shape, Shaped
 from analysis.curves.sizes import Measure
-from analysis.models.combined import Renamed, Together
+from analysis.models.combined import Together
 from analysis.models.counts import Counts, count_answers
 from analysis.models.draws import draw
 from analysis.models.fitting import OrdinalFit, fit
 from analysis.models.ordinal import OrdinalModel
-from analysis.models.predictors import Predictor, Saturating
-from analysis.models.priors import PRIORS
+from analysis.models.predictors import Predictor
+from analysis.models.priors import PRIORS, Priors
 
 Floats = NDArray[np.float64]
-SLOW: Final = (float(np.log(2.0)), 0.8)  # prior of log w where realism is lost with size
-_HEIGHT: Final = 50.0  # greater differences than any answer could tell
+LogSizes = Mapping[str, Floats]  # of each LoD, those at which it was shown
+_FREE: Final = ("threshold", "log_step", "location", "contrast", "scale")  # start at 0
 
 
 @dataclass(frozen=True)
 class SizeLaw:
     """The fitted law of several LoDs against the best.
 
-    ``sizes`` are the log2 sizes at which each LoD was shown.
+    ``sizes`` are the log2 sizes at which each LoD was shown, ``shapes`` how its difference grows.
     """
 
     measure: Measure
     best: str
-    sizes: Mapping[str, Floats]
+    sizes: LogSizes
+    shapes: Mapping[str, Shape]
     fit: OrdinalFit
     draws: Floats
     people: int
@@ -52,15 +51,11 @@ class SizeLaw:
         return tuple(self.sizes)
 
     def difference(self, lod: str, x: Floats) -> tuple[Floats, Floats]:
-        """Return A Phi((x - m) / w) at log2 sizes (n_x,), and draws of it (n_draws, n_x)."""
-        return self._difference(self.fit.parameters[None], lod, x)[0], self._difference(
-            self.draws, lod, x
-        )
-
-    def _difference(self, parameters: Floats, lod: str, x: Floats) -> Floats:
-        height, middle, width = (parameters[:, self.at(name)] for name in own_names(lod))
-        z = (x - middle[:, None]) / np.exp(width)[:, None]
-        return np.asarray(np.minimum(np.exp(height), _HEIGHT)[:, None] * ndtr(z))
+        """Return the difference at log2 sizes (n_x,), and draws of it (n_draws, n_x)."""
+        shape = self.shapes[lod]
+        places = [self.at(name) for name in shape.named(lod)]
+        value = shape.difference(self.fit.parameters[None, places], x)
+        return value[0], shape.difference(self.draws[:, places], x)
 
     def at(self, name: str) -> int:
         """Return where a parameter stands; raises ValueError."""
@@ -76,12 +71,7 @@ class SizeLaw:
         return model.thresholds(parameters), np.hypot(1.0, model.spreads(parameters)[:, 0])
 
 
-def own_names(lod: str) -> tuple[str, str, str]:
-    """Return the names of a LoD's own parameters."""
-    return f"log_height:{lod}", f"middle:{lod}", f"log_width:{lod}"
-
-
-def sizes_by_lod(lods: pd.Series, sizes: pd.Series, *, best: str) -> dict[str, Floats]:
+def sizes_by_lod(lods: pd.Series, sizes: pd.Series, *, best: str) -> LogSizes:
     """Return the log2 sizes at which each LoD was shown, of those shown at two or more."""
     found = {
         str(lod): np.unique(own.to_numpy(dtype=float))
@@ -102,15 +92,13 @@ def count_rows(rows: pd.DataFrame, keys: list[str], answer: pd.Series, categorie
     return Counted(table[keys].reset_index(drop=True), counts, tuple(str(p) for p in people))
 
 
-def law_predictor(table: pd.DataFrame, lod: str, lods: tuple[str, ...]) -> Predictor:
+def law_predictor(table: pd.DataFrame, lod: str, shapes: Mapping[str, Shape]) -> Predictor:
     """Return the law's predictor: sizes from ``size``, LoDs from the column ``lod``."""
     sizes, shown = table["size"].to_numpy(dtype=float), table[lod].to_numpy(dtype=object)
-
-    def of(name: str) -> Predictor:
-        group = np.where(shown == name, 0, -1).astype(np.intp)
-        return Renamed(Saturating(sizes, group, (name,)), own_names(name))
-
-    return reduce(Together, map(of, lods))
+    parts: list[Predictor] = [
+        Shaped(shape, sizes, shown == name, name) for name, shape in shapes.items()
+    ]
+    return reduce(Together, parts)
 
 
 @dataclass(frozen=True)
@@ -130,32 +118,33 @@ def fit_law(
     *,
     best: str,
     sizes: Mapping[str, Floats],
+    shapes: Mapping[str, Shape],
     weights: Mapping[str, float] | None,
-    log_width: tuple[float, float] = PRIORS["log_width"],
+    shape_priors: Priors = MappingProxyType({}),
 ) -> SizeLaw:
     """Fit the law; ``weights`` let a participant count for less than one.
 
-    ``log_width`` is the prior of log w: mean and standard deviation.
+    ``shape_priors`` go before those that all models share.
     """
     given = weights or {}
     often = np.array([given.get(who, 1.0) for who in counted.people])
+    priors = {**PRIORS, "middle": measure.middle, **shape_priors}
     found = fit(
         model,
         counted.counts,
-        priors={**PRIORS, "middle": measure.middle, "log_width": log_width},
+        priors=priors,
         weights=often if weights else None,
-        start=_start(model, counted.counts, measure),
+        start=_start(model, counted.counts, priors),
     )
     draws = draw(found, rng, people=counted.counts.people)
-    return SizeLaw(measure, best, sizes, found, draws, counted.counts.people)
+    return SizeLaw(measure, best, sizes, shapes, found, draws, counted.counts.people)
 
 
-def _start(model: OrdinalModel, counts: Counts, measure: Measure) -> Floats:
+def _start(model: OrdinalModel, counts: Counts, priors: Priors) -> Floats:
+    """Return the priors' middles, and the cuts that the shares of all answers make."""
     share = counts.table.sum(axis=(0, 1)) + 0.5
     cut = model.link.quantile(np.cumsum(share)[:-1] / share.sum())
-    own = {"log_height": PRIORS["log_height"][0], "middle": measure.middle[0]}
-    spreads = {kind: PRIORS[kind][0] for kind in model.kinds if kind.startswith("log_sd")}
-    start = np.array([{**own, **spreads}.get(kind, 0.0) for kind in model.kinds])
+    start = np.array([0.0 if kind in _FREE else priors[kind][0] for kind in model.kinds])
     start[0] = cut[0]
     start[1 : model.categories - 1] = np.log(np.maximum(np.diff(cut), 1e-3))
     return start

@@ -15,19 +15,13 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from analysis.curves.curve import (
-    D_PRIME_1,
-    HALFWAY,
-    MARGIN,
-    NOTICED,
-    SizeCurve,
-    band,
-    make_threshold,
-    with_interval,
-)
-from analysis.curves.law import SizeLaw, count_rows, fit_law, law_predictor, sizes_by_lod
+from analysis.curves.compared import EQUAL, against_best, at_sizes
+from analysis.curves.curve import D_PRIME_1, HALFWAY, MARGIN, NOTICED, SizeCurve, with_interval
+from analysis.curves.law import SizeLaw, count_rows, fit_law, law_predictor
+from analysis.curves.made import Level, make_curve
 from analysis.curves.observed import share_points
-from analysis.curves.sizes import Measure, along, with_size
+from analysis.curves.shapes import Shape
+from analysis.curves.sizes import Measure, along
 from analysis.decision.margins import Margins
 from analysis.models.ordinal import LENIENCY, OrdinalModel
 from analysis.tables.columns import NOTICED as GRADES
@@ -44,29 +38,17 @@ def noticed_law(
     weights: Mapping[str, float] | None = None,
 ) -> SizeLaw | None:
     """Fit the law to rows of ``against_best``; None without equal pairs or with one size only."""
-    is_equal = rows["lod"] == ""
-    sizes = sizes_by_lod(rows["lod"][~is_equal], rows["size"][~is_equal], best=best)
-    if not sizes or not is_equal.any():
+    kept, sizes = at_sizes(rows, best)
+    if not sizes or not (kept["lod"] == EQUAL).any():
         return None
-    kept = rows[is_equal | rows["lod"].isin(sizes)].copy()
-    kept["size"] = kept["size"].where(kept["lod"] != "", 0.0)  # equal pairs: one stimulus
     grade = kept["noticed"].map({word: i for i, word in enumerate(reversed(GRADES))})
     counted = count_rows(kept, ["lod", "size"], grade, len(GRADES))
-    predictor = law_predictor(counted.table, "lod", tuple(sizes))
+    shapes = dict.fromkeys(sizes, Shape())
+    predictor = law_predictor(counted.table, "lod", shapes)
     model = OrdinalModel(predictor, len(GRADES), (LENIENCY,))
-    return fit_law(model, counted, measure, rng, best=best, sizes=sizes, weights=weights)
-
-
-def against_best(comparisons: pd.DataFrame, measure: Measure, best: str) -> pd.DataFrame:
-    """Return the trials of a LoD beside the best, and of equal LoDs, that count and have a size.
-
-    ``lod`` is the lesser one, "" for equal pairs; ``is_right`` says whether the best stood right.
-    """
-    rows = with_size(comparisons[~comparisons["is_practice"]], measure)
-    left, right = rows["left_lod"], rows["right_lod"]
-    lesser = left.where(right == best, right).where(left != right, "")
-    is_wanted = (left == right) | (left == best) | (right == best)
-    return rows.assign(lod=lesser, is_right=right == best)[is_wanted]
+    return fit_law(
+        model, counted, measure, rng, best=best, sizes=sizes, shapes=shapes, weights=weights
+    )
 
 
 def noticed_curves(
@@ -91,38 +73,24 @@ def _curve(law: SizeLaw, rows: pd.DataFrame, lod: str, margins: Margins) -> Size
     yes = ndtr((d - criterion[0]) / noise[0])
     yes_draws = ndtr((d_draws - criteria[:, None]) / noises[:, None])
     alarm, alarms = float(ndtr(-criterion[0] / noise[0])), ndtr(-criteria / noises)
-    low, high = band(yes_draws)
     own = rows[rows["lod"] == lod]
+    margin = margins.noticed_share
     levels = (
-        (D_PRIME_1, 1.0, d, d_draws, np.ones(len(d_draws))),
-        (HALFWAY, (1 + alarm) / 2, yes, yes_draws, (1 + alarms) / 2),
-        (MARGIN, alarm + margins.noticed_share, yes, yes_draws, alarms + margins.noticed_share),
+        Level(D_PRIME_1, 1.0, d, d_draws, 1.0),
+        Level(HALFWAY, (1 + alarm) / 2, yes, yes_draws, (1 + alarms) / 2),
+        Level(MARGIN, alarm + margin, yes, yes_draws, alarms + margin),
     )
-    return SizeCurve(
-        kind=NOTICED,
-        measure=law.measure,
-        lod=lod,
-        best=law.best,
-        sizes=2.0**x,
+    return make_curve(
+        NOTICED,
+        law,
+        lod,
+        rows=own,
         value=yes,
-        low=low,
-        high=high,
+        draws=yes_draws,
         base=with_interval(alarm, alarms),
         points=share_points(own["size"], own["noticed"] == "yes"),
-        thresholds=tuple(
-            make_threshold(
-                name,
-                level,
-                x,
-                value=value,
-                draws=draws,
-                levels=each,
-                confidence=margins.confidence,
-            )
-            for name, level, value, draws, each in levels
-        ),
-        people=own["participant"].nunique(),
-        answers=len(own),
+        levels=levels,
+        confidence=margins.confidence,
     )
 
 

@@ -1,9 +1,9 @@
 """Who finds the best LoD more realistic than a lesser one beside it, along the iris's size.
 
-    P(-1) = Phi(-delta - lambda - D),  P(0) = Phi(delta - lambda - D) - P(-1),  D = +-A Phi(z)
+    P(-1) = Phi(-delta - lambda - D),  P(0) = Phi(delta - lambda - D) - P(-1),  D = +-d(x)
 
-where z = (x - m) / w and the sign is that of the side on which the best LoD stands. "No difference"
-is an answer like others.
+where the sign is that of the side on which the best LoD stands. "No difference" is an answer like
+others.
 """
 
 from __future__ import annotations
@@ -15,10 +15,12 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from analysis.curves.curve import ONE_JOD, PREFERRED, SizeCurve, band, make_threshold, with_interval
-from analysis.curves.law import SLOW, SizeLaw, count_rows, fit_law, law_predictor, sizes_by_lod
-from analysis.curves.noticed import against_best
+from analysis.curves.compared import against_best, at_sizes
+from analysis.curves.curve import ONE_JOD, PREFERRED, SizeCurve, with_interval
+from analysis.curves.law import SizeLaw, count_rows, fit_law, law_predictor
+from analysis.curves.made import Level, make_curve
 from analysis.curves.observed import share_points
+from analysis.curves.shapes import BENT_PRIORS, bent_over
 from analysis.curves.sizes import Measure, along
 from analysis.decision.margins import Margins
 from analysis.estimates.preference import JOD
@@ -37,18 +39,24 @@ def preferred_law(
     weights: Mapping[str, float] | None = None,
 ) -> SizeLaw | None:
     """Fit the law to rows of ``against_best``; None where no LoD was shown at two sizes."""
-    is_equal = rows["lod"] == ""
-    sizes = sizes_by_lod(rows["lod"][~is_equal], rows["size"][~is_equal], best=best)
+    kept, sizes = at_sizes(rows, best)
     if not sizes:
         return None
-    kept = rows[is_equal | rows["lod"].isin(sizes)].copy()
-    kept["size"] = kept["size"].where(kept["lod"] != "", 0.0)
     counted = count_rows(kept, ["lod", "size", "is_right"], kept["comparison"] + 1, 3)
-    law = law_predictor(counted.table, "lod", tuple(sizes))
+    shapes = {lod: bent_over(own) for lod, own in sizes.items()}
+    law = law_predictor(counted.table, "lod", shapes)
     sign = np.where(counted.table["is_right"].to_numpy(dtype=bool), 1.0, -1.0)
     model = OrdinalModel(Scaled(law, sign), 3, (LENIENCY,))
     return fit_law(
-        model, counted, measure, rng, best=best, sizes=sizes, weights=weights, log_width=SLOW
+        model,
+        counted,
+        measure,
+        rng,
+        best=best,
+        sizes=sizes,
+        shapes=shapes,
+        weights=weights,
+        shape_priors=BENT_PRIORS,
     )
 
 
@@ -75,32 +83,19 @@ def _curve(law: SizeLaw, rows: pd.DataFrame, lod: str, margins: Margins) -> Size
     none = np.zeros((1, 1))
     base = float(_wins(law, one, none)[0, 0])
     bases = _wins(law, all_draws, np.zeros((len(all_draws), 1)))[:, 0]
-    low, high = band(values)
     own = rows[rows["lod"] == lod]
     sign = np.where(own["is_right"].to_numpy(dtype=bool), 1.0, -1.0)
-    threshold = make_threshold(
-        ONE_JOD,
-        1.0,
-        x,
-        value=JOD * d,
-        draws=JOD * d_draws,
-        levels=1.0,
-        confidence=margins.confidence,
-    )
-    return SizeCurve(
-        kind=PREFERRED,
-        measure=law.measure,
-        lod=lod,
-        best=law.best,
-        sizes=2.0**x,
+    return make_curve(
+        PREFERRED,
+        law,
+        lod,
+        rows=own,
         value=value,
-        low=low,
-        high=high,
+        draws=values,
         base=with_interval(base, bases),
         points=share_points(own["size"], pd.Series(own["comparison"].astype(float) * sign > 0)),
-        thresholds=(threshold,),
-        people=own["participant"].nunique(),
-        answers=len(own),
+        levels=(Level(ONE_JOD, 1.0, JOD * d, JOD * d_draws, 1.0),),
+        confidence=margins.confidence,
     )
 
 

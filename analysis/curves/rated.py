@@ -1,6 +1,6 @@
 """How far below the best LoD a lesser one is rated, along the iris's size.
 
-    eta = mu(x) - A Phi((x - m) / w) + kappa (own - beside) + side, direction, expertise
+    eta = mu(x) - d(x) + kappa (own - beside) + side, direction, expertise
 
 mu is the best LoD's realism, free in every octave; the rest is as in the estimates by distance. The
 loss in points is the difference of the population's mean ratings at that size.
@@ -17,9 +17,8 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from analysis.curves.curve import MARGIN, RATED, SizeCurve, band, make_threshold
+from analysis.curves.curve import MARGIN, RATED, SizeCurve
 from analysis.curves.law import (
-    SLOW,
     Counted,
     SizeLaw,
     count_rows,
@@ -27,7 +26,9 @@ from analysis.curves.law import (
     law_predictor,
     sizes_by_lod,
 )
+from analysis.curves.made import Level, make_curve
 from analysis.curves.observed import loss_points
+from analysis.curves.shapes import BENT_PRIORS, Shape, bent_over
 from analysis.curves.sizes import Measure, along, with_size
 from analysis.decision.margins import Margins
 from analysis.descriptive import answered
@@ -42,10 +43,14 @@ _OCTAVE: Final = "octave"
 
 @dataclass(frozen=True)
 class RatedLaw:
-    """The fitted law, and the octaves (log2) at which the best LoD's realism is free."""
+    """The fitted law, and the octaves (log2) at which the best LoD's realism is free.
+
+    ``middles`` are the mean log2 size shown in each octave, which its realism belongs to.
+    """
 
     law: SizeLaw
     octaves: tuple[float, ...]
+    middles: tuple[float, ...]
 
 
 def rated_law(
@@ -65,20 +70,32 @@ def rated_law(
     kept = rows[(rows["lod"] == best) | rows["lod"].isin(sizes)]
     is_known = kept["other_lod"].isin([best, *sizes])
     kept = kept.assign(other_lod=kept["other_lod"].where(is_known, kept["lod"]))
-    kept = kept.assign(octave=np.round(kept["size"]))
+    kept = kept.assign(octave=np.round(kept["size"]) + 0.0)  # never minus nought
     coded, nuisances = with_nuisances(kept, experts)
     low, high = scale
     keys = ["lod", "other_lod", "size", _OCTAVE, *nuisances]
     counted = count_rows(coded, keys, coded["rating"] - low, high - low + 1)
-    predictor = _predictor(counted, tuple(sizes), nuisances)
+    shapes = {lod: bent_over(own) for lod, own in sizes.items()}
+    predictor = _predictor(counted, shapes, nuisances)
     model = OrdinalModel(predictor, high - low + 1, (LENIENCY,))
     law = fit_law(
-        model, counted, measure, rng, best=best, sizes=sizes, weights=weights, log_width=SLOW
+        model,
+        counted,
+        measure,
+        rng,
+        best=best,
+        sizes=sizes,
+        shapes=shapes,
+        weights=weights,
+        shape_priors=BENT_PRIORS,
     )
-    return RatedLaw(law, tuple(sorted(counted.table[_OCTAVE].unique().tolist())))
+    shown = coded[coded["lod"] == best].groupby(_OCTAVE)["size"].mean()
+    every = coded.groupby(_OCTAVE)["size"].mean()
+    middles = shown.reindex(every.index).fillna(every)
+    return RatedLaw(law, tuple(every.index.tolist()), tuple(middles.tolist()))
 
 
-def _predictor(counted: Counted, lods: tuple[str, ...], nuisances: list[str]) -> Predictor:
+def _predictor(counted: Counted, shapes: Mapping[str, Shape], nuisances: list[str]) -> Predictor:
     table = counted.table
     octaves = sorted(table[_OCTAVE].unique())[1:]
     columns = [(table[_OCTAVE] == octave).astype(float) for octave in octaves]
@@ -87,7 +104,7 @@ def _predictor(counted: Counted, lods: tuple[str, ...], nuisances: list[str]) ->
     names = (*(f"{_OCTAVE}:{octave:g}" for octave in octaves), *nuisances)
 
     def side(column: str) -> Predictor:
-        law = law_predictor(table, column, lods)
+        law = law_predictor(table, column, shapes)
         return Together(Linear(design, names), Scaled(law, np.full(len(table), -1.0)))
 
     partners = table.groupby([_OCTAVE, "lod"])["other_lod"].nunique()
@@ -119,31 +136,18 @@ def _curve(rated: RatedLaw, rows: pd.DataFrame, lod: str, margins: Margins) -> S
     d, d_draws = law.difference(lod, x)
     one, all_draws = law.both()
     loss, losses = _loss(rated, one, x, d[None])[0], _loss(rated, all_draws, x, d_draws)
-    low, high = band(losses)
-    own = rows[rows["lod"] == lod]
-    threshold = make_threshold(
-        MARGIN,
-        margins.realism_points,
-        x,
+    margin = margins.realism_points
+    return make_curve(
+        RATED,
+        law,
+        lod,
+        rows=rows[rows["lod"] == lod],
         value=loss,
         draws=losses,
-        levels=margins.realism_points,
-        confidence=margins.confidence,
-    )
-    return SizeCurve(
-        kind=RATED,
-        measure=law.measure,
-        lod=lod,
-        best=law.best,
-        sizes=2.0**x,
-        value=loss,
-        low=low,
-        high=high,
         base=(0.0, 0.0, 0.0),
         points=loss_points(rows, lod, law.best),
-        thresholds=(threshold,),
-        people=own["participant"].nunique(),
-        answers=len(own),
+        levels=(Level(MARGIN, margin, loss, losses, margin),),
+        confidence=margins.confidence,
     )
 
 
@@ -151,7 +155,7 @@ def _loss(rated: RatedLaw, parameters: Floats, x: Floats, d: Floats) -> Floats:
     """Return the points lost (n, n_x) by a difference d on the latent scale."""
     law = rated.law
     tau, noise = law.answer_criteria(parameters)
-    best = _best_place(rated.octaves, law, parameters, x)
+    best = _best_place(rated, parameters, x)
     total = np.zeros(np.broadcast_shapes(best.shape, d.shape))
     for k in range(tau.shape[1]):
         cut = tau[:, k : k + 1]
@@ -159,9 +163,9 @@ def _loss(rated: RatedLaw, parameters: Floats, x: Floats, d: Floats) -> Floats:
     return total
 
 
-def _best_place(octaves: tuple[float, ...], law: SizeLaw, parameters: Floats, x: Floats) -> Floats:
+def _best_place(rated: RatedLaw, parameters: Floats, x: Floats) -> Floats:
     """Return the best LoD's realism (n, n_x), linear between the octaves' middles."""
-    own = parameters[:, [law.at(f"{_OCTAVE}:{octave:g}") for octave in octaves[1:]]]
-    values = np.column_stack([np.zeros(len(parameters)), own])
-    weights = np.array([np.interp(x, octaves, unit) for unit in np.eye(len(octaves))])
+    places = [rated.law.at(f"{_OCTAVE}:{octave:g}") for octave in rated.octaves[1:]]
+    values = np.column_stack([np.zeros(len(parameters)), parameters[:, places]])
+    weights = np.array([np.interp(x, rated.middles, unit) for unit in np.eye(len(rated.octaves))])
     return np.asarray(values @ weights)

@@ -1,4 +1,4 @@
-"""Predictors made of others: scaled by stimulus, added up, renamed, seen beside a partner."""
+"""Predictors made of others: scaled by stimulus, added up, seen beside a partner."""
 
 from __future__ import annotations
 
@@ -75,32 +75,6 @@ class Together:
         at = len(self.first.names)
         parts = self.first.jacobian(parameters[:at]), self.second.jacobian(parameters[at:])
         return np.column_stack(parts)
-
-
-@dataclass(frozen=True)
-class Renamed:
-    """A predictor whose parameters have other names: two of a kind can then stand together."""
-
-    predictor: Predictor
-    names: tuple[str, ...]
-
-    @property
-    def stimuli(self) -> int:
-        """How many stimuli there are."""
-        return self.predictor.stimuli
-
-    @property
-    def kinds(self) -> tuple[str, ...]:
-        """The predictor's own."""
-        return self.predictor.kinds
-
-    def eta(self, parameters: Floats) -> Floats:
-        """Return the predictor's own."""
-        return self.predictor.eta(parameters)
-
-    def jacobian(self, parameters: Floats) -> Floats:
-        """Return the predictor's own."""
-        return self.predictor.jacobian(parameters)
 
 
 @dataclass(frozen=True)

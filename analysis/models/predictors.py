@@ -11,10 +11,8 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 Floats = NDArray[np.float64]
-Integers = NDArray[np.intp]
 
 
 class Predictor(Protocol):
@@ -109,66 +107,6 @@ class Contrasted:
         """Return (X + kappa (X - Z), (X - Z) m)."""
         away = self.design - self.beside
         return np.column_stack([self.design + parameters[-1] * away, away @ parameters[:-1]])
-
-
-@dataclass(frozen=True)
-class Saturating:
-    """eta = A_g Phi((x - m_g) / w): how much of a gap an eye of size x, a logarithm, shows.
-
-    ``group`` (n_stimuli,) numbers the curves, -1 where eta is 0, as for a pair of equal LoDs. The
-    parameters are log A and m of each of ``curves``, then log w, which all share.
-    """
-
-    x: Floats
-    group: Integers
-    curves: tuple[str, ...]
-
-    @property
-    def stimuli(self) -> int:
-        """How many stimuli there are."""
-        return len(self.x)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """log A of every curve, m of every curve, log w."""
-        return (
-            *(f"log_height:{curve}" for curve in self.curves),
-            *(f"middle:{curve}" for curve in self.curves),
-            "log_width",
-        )
-
-    @property
-    def kinds(self) -> tuple[str, ...]:
-        """What each parameter is."""
-        count = len(self.curves)
-        return (*("log_height",) * count, *("middle",) * count, "log_width")
-
-    def eta(self, parameters: Floats) -> Floats:
-        """Return A Phi(z), 0 outside the groups."""
-        height, z, _ = self._parts(parameters)
-        return np.where(self.group >= 0, height * ndtr(z), 0.0)
-
-    def jacobian(self, parameters: Floats) -> Floats:
-        """Return the derivatives by log A, m and log w."""
-        height, z, width = self._parts(parameters)
-        steep = height * np.exp(-0.5 * z * z) / np.sqrt(2 * np.pi)
-        count = len(self.curves)
-        member = (self.group[:, None] == np.arange(count)).astype(float)
-        inside = (self.group >= 0).astype(float)
-        return np.column_stack(
-            [
-                member * (height * ndtr(z))[:, None],
-                member * (-steep / width)[:, None],
-                -steep * z * inside,
-            ]
-        )
-
-    def _parts(self, parameters: Floats) -> tuple[Floats, Floats, float]:
-        count = len(self.curves)
-        own = np.maximum(self.group, 0)
-        width = float(np.exp(parameters[-1]))
-        z = (self.x - parameters[count : 2 * count][own]) / width
-        return np.exp(parameters[:count])[own], z, width
 
 
 def _check(design: Floats, names: tuple[str, ...]) -> None:

@@ -9,6 +9,7 @@ import statsmodels.api as sm
 from scipy.special import log_ndtr, ndtr, ndtri
 
 from analysis.curves.along_sizes import curves_of
+from analysis.curves.compared import against_best
 from analysis.curves.curve import (
     ABOVE,
     BELOW,
@@ -24,11 +25,12 @@ from analysis.curves.curve import (
     threshold_table,
 )
 from analysis.curves.law import SizeLaw
-from analysis.curves.noticed import against_best, noticed_curves, noticed_law
+from analysis.curves.noticed import noticed_curves, noticed_law
+from analysis.curves.shapes import Shape, Shaped
 from analysis.curves.sizes import DEGREES, PIXELS, crossing, with_size
 from analysis.decision.margins import DEFAULT
-from analysis.models.combined import Beside, Renamed, Scaled, Together
-from analysis.models.predictors import Linear, Saturating
+from analysis.models.combined import Beside, Scaled, Together
+from analysis.models.predictors import Linear
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.simulated import simulate_tables
 from analysis.tables.reading import Tables, tables_from
@@ -186,9 +188,8 @@ def test_predictors_made_of_others_have_the_derivatives_of_differences() -> None
     rng = np.random.default_rng(3)
     x = rng.uniform(3, 9, 8)
 
-    def law(name: str, group: list[int]) -> Renamed:
-        names = (f"a:{name}", f"m:{name}", f"w:{name}")
-        return Renamed(Saturating(x, np.array(group, dtype=np.intp), (name,)), names)
+    def law(name: str, group: list[int]) -> Shaped:
+        return Shaped(Shape(), x, np.array(group) == 0, name)
 
     own = Together(law("low", [0, 0, 0, -1, -1, 0, -1, -1]), law("high", [-1] * 3 + [0] * 5))
     beside = Together(law("low", [-1] * 8), law("high", [0, -1] * 4))
@@ -201,7 +202,7 @@ def test_predictors_made_of_others_have_the_derivatives_of_differences() -> None
     by_difference = [(model.eta(at + s) - model.eta(at - s)) / 2e-6 for s in steps]
     assert model.jacobian(at) == pytest.approx(np.column_stack(by_difference), abs=1e-7)
     assert (model.stimuli, len(model.kinds)) == (8, len(at))
-    assert model.names[2] == "a:low"
+    assert model.names[2] == "log_height:low"
     assert model.names[-1] == "contrast"
 
 

@@ -5,15 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from analysis.models.predictors import Contrasted, Linear, Predictor, Saturating
+from analysis.models.predictors import Contrasted, Linear, Predictor
 
 RNG = np.random.default_rng(1)
 CASES: dict[str, Predictor] = {
     "linear": Linear(RNG.normal(size=(5, 2)), ("a", "b")),
     "contrasted": Contrasted(RNG.normal(size=(5, 2)), RNG.normal(size=(5, 2)), ("a", "b")),
-    "saturating": Saturating(
-        np.array([3.6, 5.3, 7.3, 8.5, 5.0]), np.array([0, 1, 0, 1, -1]), ("low", "high")
-    ),
 }
 
 
@@ -33,11 +30,6 @@ def test_equal_lods_gain_nothing_by_contrast() -> None:
     own = Contrasted(design, design, ("a", "b", "c"))
     means = np.array([0.3, 0.8, -0.2])
     assert own.eta(np.append(means, 0.7)) == pytest.approx(means)
-
-
-def test_a_curve_is_half_its_height_in_its_middle_and_zero_for_equal_lods() -> None:
-    curve = Saturating(np.array([6.0, 60.0, 6.0]), np.array([0, 0, -1]), ("low",))
-    assert curve.eta(np.array([np.log(3.0), 6.0, 0.0])) == pytest.approx([1.5, 3.0, 0.0])
 
 
 def test_a_design_without_a_column_for_a_term_is_refused() -> None:
