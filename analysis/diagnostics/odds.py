@@ -16,10 +16,11 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from analysis.estimates.realism import Realism
 from analysis.models.counts import Counts
 from analysis.models.fitting import OrdinalFit, fit
 from analysis.models.nesting import best_log_likelihood
-from analysis.models.ordinal import OrdinalModel
+from analysis.models.ordinal import LENIENCY, OrdinalModel
 
 Floats = NDArray[np.float64]
 SCALE, CATEGORIES = "scale", "categories"
@@ -50,6 +51,29 @@ def odds_tests(
         for test in (SCALE, CATEGORIES):
             rows.append({"factor": factor, "test": test, **_ratio(plain, columns, test)})
     return pd.DataFrame(rows, columns=list(COLUMNS))
+
+
+def odds_of(realism: Realism) -> pd.DataFrame:
+    """Test LoD and distance in a study's ratings, with people's leniency and the report's weights.
+
+    People differ in leniency alone here: those who differ in scatter or in how they use the ends
+    of the scale may show as scatter of a LoD.
+    """
+    own = realism.fit
+    model = OrdinalModel(own.model.predictor, own.model.categories, (LENIENCY,))
+    table = realism.stimuli.table
+    factors = {
+        name: _levels(table[column], [cell[place] for cell in realism.cells])
+        for name, column, place in (("LoD", "lod", 1), ("distance", "distance", 0))
+    }
+    return odds_tests(model, own.counts, factors, weights=own.weights)
+
+
+def _levels(values: pd.Series, order: list[str]) -> Floats:
+    """Return a column (n_stimuli,) of 0 and 1 for every level but the first."""
+    levels = list(dict.fromkeys(order))[1:]
+    columns = [values.eq(level).to_numpy(dtype=float) for level in levels]
+    return np.column_stack(columns) if columns else np.zeros((len(values), 0))
 
 
 def _used(model: OrdinalModel, counts: Counts) -> tuple[OrdinalModel, Counts]:

@@ -16,6 +16,7 @@ from analysis.diagnostics.left_out import FEWEST, MOST_REFITS, is_refitted, left
 from analysis.diagnostics.metric_rival import MetricRival
 from analysis.estimates.realism import Realism
 from analysis.models.fitting import OrdinalFit, Problem, fit
+from analysis.models.grids import thinned
 from analysis.models.optimum import climb
 from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE, OrdinalModel
 from analysis.models.priors import PRIORS
@@ -34,7 +35,7 @@ COLUMNS: Final = (
 )
 REFITS, EXPANSION, GROUPS = "fits without each person", "expansion", "20 groups of people"
 _MOST_TRIED: Final = 3_000  # ratings up to which scatter and style are tried though few each
-_FEW_NODES: Final = (17, 5, 5)  # for few ratings each, which leave people wide open
+_FEW_NODES: Final = (15, 5, 5)  # for few ratings each, which leave people wide open
 _QUICK: Final = 2e8  # people x stimuli x categories x nodes up to which a step is worth its time
 
 
@@ -81,7 +82,8 @@ def _fitted(realism: Realism, effects: tuple[str, ...]) -> OrdinalFit | None:
         return None
     start = [own.value(name) if name in own.model.names else np.log(0.2) for name in model.names]
     problem = Problem(model, own.counts, PRIORS, own.weights)
-    grid = normal_grid(_FEW_NODES, reach=(5.5, 3.5, 3.5))
+    whole = normal_grid(_FEW_NODES, reach=(5.5, 3.5, 3.5))
+    grid = thinned(model, np.array(start), own.counts, whole)
     inverse = np.diag([0.25] * len(start))
     known = [i for i, name in enumerate(model.names) if name in own.model.names]
     inverse[np.ix_(known, known)] = own.covariance

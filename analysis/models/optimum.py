@@ -22,11 +22,12 @@ _STEP: Final = 1e-5  # of the gradient's differences: its own error is about 1e-
 
 
 def climb(
-    target: Objective, start: Floats, *, inverse: Floats | None = None
+    target: Objective, start: Floats, *, inverse: Floats | None = None, near: float = _NEAR
 ) -> tuple[Floats, Floats]:
     """Minimise by BFGS; return the place and the inverse Hessian that BFGS believes in there.
 
-    ``inverse`` is such a matrix near the optimum, where one is known: it saves most of the steps.
+    ``inverse`` is such a matrix near the optimum, where one is known: it saves most of the steps;
+    ``near`` is then how many standard errors from the optimum are near enough.
     """
     scale = max(1.0, float(np.abs(target(start)[1]).max()))
 
@@ -37,8 +38,8 @@ def climb(
     options: Any = {"gtol": _CLOSE, "maxiter": 500}
     if inverse is not None:
         errors = np.sqrt(np.maximum(np.diag(inverse), 0.0))
-        near = _NEAR / max(float(errors.max(initial=0.0)), _NEAR) / scale
-        options = options | {"gtol": max(near, _CLOSE), "hess_inv0": _positive(inverse * scale)}
+        steep = near / max(float(errors.max(initial=0.0)), _NEAR) / scale
+        options = options | {"gtol": max(steep, _CLOSE), "hess_inv0": _positive(inverse * scale)}
     found = minimize(scaled, start, jac=True, method="BFGS", options=options)
     return np.asarray(found.x, dtype=float), _positive(np.asarray(found.hess_inv)) / scale
 
