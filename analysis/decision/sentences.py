@@ -91,7 +91,7 @@ def _doubt(verdict: Verdict) -> str:
     if not verdict.realism.passes:
         doubts.append(f"a loss of up to {number(verdict.realism.high)} points is not ruled out")
     if verdict.noticed is None:
-        doubts.append("whether it is noticed was not measured")
+        doubts.append("whether it is noticed beyond false alarms was not measured")
     elif not verdict.noticed.passes:
         doubts.append(f"up to {percent(verdict.noticed.high)} may notice it")
     return " and ".join(doubts)

@@ -125,7 +125,9 @@ def _verdict(best: str, passed: Sequence[_Gap], rest: Sequence[_Gap]) -> str:
         lower = [gap for gap in rest if gap.is_loss]
         every = "every lower LoD shown" if len(lower) == len(rest) else "the next LoD down"
         stated = listed([_loss(gap) for gap in lower])
-        return f"{every} was rated below {best}, {stated}, so among these only {best} will do"
+        return (
+            f"{every} was rated below {best}, {stated}, so by the means alone only {best} is left"
+        )
     return _losses(best, rest)
 
 

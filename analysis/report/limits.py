@@ -90,8 +90,9 @@ def _unmeasured(verdicts: Iterable[Verdict]) -> list[str]:
     if not unknown:
         return []
     return [
-        "Whether it is noticed was not measured, without which no LoD is called equivalent: "
-        f"{_named(unknown)}. It takes that pair and pairs of equal LoDs."
+        "Whether it is noticed beyond false alarms was not measured, without which no LoD is "
+        f"called equivalent: {_named(unknown)}. It takes that pair and pairs of equal LoDs. In the shares "
+        "of draws in which a LoD is the cheapest, these go by their ratings alone."
     ]
 
 

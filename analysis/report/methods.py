@@ -102,7 +102,8 @@ def _data(tables: Tables) -> str:
     digest = hashlib.sha256(rows.encode()).hexdigest()[:16]
     rated = answered(tables.ratings)
     text = (
-        f"Data: {len(rated)} ratings by {rated['participant'].nunique()} people, SHA-256 {digest}"
+        f"Data: {len(rated)} ratings by {rated['participant'].nunique()} people; as read, the "
+        f"tables' SHA-256 begins {digest}"
     )
     latest = tables.ratings["started_at"].max()
-    return f"{text}, until {latest:%Y-%m-%d %H:%M} UTC." if pd.notna(latest) else f"{text}."
+    return f"{text}; until {latest:%Y-%m-%d %H:%M} UTC." if pd.notna(latest) else f"{text}."

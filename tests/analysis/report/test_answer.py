@@ -62,7 +62,7 @@ def test_where_all_are_lower_only_the_best_will_do() -> None:
     found = only(findings(tables(people(ULTRA, low=LOWER))))
     assert found.lod == "ultra"
     assert found.sentence.startswith("every lower LoD shown was rated below ultra, low by 2.20")
-    assert found.sentence.endswith("so among these only ultra will do.")
+    assert found.sentence.endswith("so by the means alone only ultra is left.")
 
 
 def test_nothing_is_named_where_half_the_scale_is_not_ruled_out() -> None:

@@ -46,6 +46,7 @@ def test_what_is_open_untested_and_unmeasured_is_named(thesis_tables: Tables, au
     assert "Open, neither shown to be enough nor shown not to be: high at near." in text
     assert "Not tested, because a higher LoD had failed before: medium at near." in text
     assert "without which no LoD is called equivalent: medium at near." in text
+    assert "a LoD is the cheapest, these go by their ratings alone." in text
     assert "low at near" not in text  # that one is decided
 
 
