@@ -11,6 +11,8 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+from study.commands.places import new_folder
+
 if TYPE_CHECKING:
     from analysis import Tables
 
@@ -31,8 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--out",
-        type=Path,
-        default=Path("out/report"),
+        type=new_folder,
+        default="out/report",
         metavar="DIR",
         help="folder for what is written (default: %(default)s)",
     )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from study.commands.errors import CommandError
 from study.commands.options import size
+from study.commands.places import new_file
 
 if TYPE_CHECKING:
     from renderer.benchmark.plan import Progress
@@ -49,8 +50,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--out",
-        type=Path,
-        default=Path("out/bench.json"),
+        type=new_file,
+        default="out/bench.json",
         metavar="FILE.json",
         help="where to write the rows; the chart lies beside it (default: %(default)s)",
     )

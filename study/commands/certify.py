@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from pathlib import Path
 from typing import Any
 
 from study.commands.errors import CommandError
 from study.commands.eye_options import iris
 from study.commands.options import count
+from study.commands.places import new_folder
 
 HELP = "compare the eye with a path tracer's"
 DESCRIPTION = (
@@ -25,8 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
     parser.add_argument(
         "--out",
-        type=Path,
-        default=Path("out/certification"),
+        type=new_folder,
+        default="out/certification",
         metavar="FOLDER",
         help="where to write report.html, certification.json and pictures (default: %(default)s)",
     )

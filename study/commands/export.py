@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from study.commands.options import add_places, settings_of
+from study.commands.places import new_folder
 
 HELP = "write a study's tables and their codebook"
 DESCRIPTION = (
@@ -24,8 +24,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--out",
-        type=Path,
-        default=Path("out/tables"),
+        type=new_folder,
+        default="out/tables",
         metavar="DIR",
         help="folder for the files (default: %(default)s)",
     )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import Final
 
 from study.commands.eye_arguments import add_picture
 from study.commands.eye_options import spec_of, viewpoint_of
+from study.commands.places import new_folder
 
 HELP = "write a scene in open formats"
 DESCRIPTION = (
@@ -29,8 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--out",
-        type=Path,
-        default=Path("out/scene"),
+        type=new_folder,
+        default="out/scene",
         metavar="DIR",
         help="folder to write into (default: %(default)s)",
     )

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from study.commands.options import size
+from study.commands.places import new_folder
 
 if TYPE_CHECKING:
     from renderer.gallery.strips import Strip
@@ -25,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
     parser.add_argument(
         "--out",
-        type=Path,
+        type=new_folder,
         metavar="DIR",
         help="folder of the pictures (default: out/gallery, or out/sheets with --sheets)",
     )

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from study.commands.errors import CommandError
+from study.commands.places import new_file, new_folder
 
 if TYPE_CHECKING:
     from renderer.unrefraction.recovery import Recovery
@@ -28,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("photograph", type=Path, metavar="PHOTO", help="JPEG, PNG, TIFF, WebP ...")
     parser.add_argument(
         "--out",
-        type=Path,
+        type=place,
         metavar="PLACE",
         help="folder for everything, or a file ending in .npz for the iris alone "
         "(default: out/iris/PHOTO)",
@@ -52,6 +53,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--no-drawing", action="store_true", help="leave the drawn eye out of the preview: no GL"
     )
+
+
+def place(text: str) -> Path:
+    """Read where an iris goes: a folder, or a file of its own."""
+    return (new_file if text.endswith(".npz") else new_folder)(text)
 
 
 def run(options: argparse.Namespace) -> int:

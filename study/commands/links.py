@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
 from study.commands.options import add_listening, add_places, add_study, count, settings_of
+from study.commands.places import new_file
 
 if TYPE_CHECKING:
     from study.data.links import NewLink
@@ -31,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--count", type=count, required=True, metavar="N", help="how many")
     parser.add_argument(
         "--out",
-        type=Path,
+        type=new_file,
         metavar="FILE",
         help="the table, a CSV file that is not there yet (default: links-KEY.csv)",
     )

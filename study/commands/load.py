@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
 from study.commands.options import count
+from study.commands.places import new_file
 
 if TYPE_CHECKING:
     from study.load.runs import Run
@@ -42,7 +42,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--no-fsync-cost", action="store_true", help="leave out the runs without fsync"
     )
-    parser.add_argument("--out", type=Path, metavar="FILE", help="write the figures as JSON too")
+    parser.add_argument(
+        "--out", type=new_file, metavar="FILE", help="write the figures as JSON too"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
+
+from study.commands.places import new_file
 
 HELP = "measure from which size on each LoD shows"
 DESCRIPTION = (
@@ -17,8 +18,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
     parser.add_argument(
         "--out",
-        type=Path,
-        default=Path("out/lod_policy.json"),
+        type=new_file,
+        default="out/lod_policy.json",
         metavar="FILE",
         help="where to write the policy (default: %(default)s)",
     )

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from study.commands.options import add_study, count, reading
+from study.commands.places import new_folder
 
 if TYPE_CHECKING:
     from tqdm import tqdm
@@ -115,8 +116,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--out",
-        type=Path,
-        default=Path("out/power"),
+        type=new_folder,
+        default="out/power",
         metavar="DIR",
         help="folder for power.csv, power-cheapest.csv, power.json and the chart "
         "(default: %(default)s)",

@@ -16,6 +16,7 @@ from study.commands.encoding import add_encoding, encoding_choices, warn_of_miss
 from study.commands.errors import CommandError
 from study.commands.options import add_study, count, settings_of, size
 from study.commands.pictures import check_pictures
+from study.commands.places import new_folder
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
@@ -35,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_study(parser)
     parser.add_argument(
         "--out",
-        type=Path,
+        type=new_folder,
         metavar="DIR",
         help="folder for the clips (default: ocularist-data/clips, where ocularist run finds them)",
     )

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fastapi import FastAPI
 
     from study.settings import Settings
+    from study.site.place import Place
 
 HELP = "run the site alone"
 DESCRIPTION = (
@@ -98,6 +99,8 @@ def site_of_environment() -> FastAPI:
     from study.site.app import create_app
 
     site = create_app(read_settings(os.environ), study_id=int(os.environ[STUDY_ID]))
+    place: Place = site.state.place
+    place.warm_up()
     _tune_interpreter()
     return site
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from study.commands.errors import CommandError
 from study.commands.eye_arguments import add_picture
 from study.commands.eye_options import spec_of, viewpoint_of
+from study.commands.places import new_file
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
@@ -57,8 +58,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--wireframe", action="store_true", help="draw the eyes' meshes as lines")
     parser.add_argument(
         "--out",
-        type=Path,
-        default=Path("out/still.png"),
+        type=new_file,
+        default="out/still.png",
         metavar="FILE",
         help="where to write the picture: .png as shown, .exr linear radiance without exposure, "
         "bloom and tone curve (default: %(default)s)",
