@@ -91,8 +91,8 @@ def _unmeasured(verdicts: Iterable[Verdict]) -> list[str]:
         return []
     return [
         "Whether it is noticed beyond false alarms was not measured, without which no LoD is "
-        f"called equivalent: {_named(unknown)}. It takes that pair and pairs of equal LoDs. In the shares "
-        "of draws in which a LoD is the cheapest, these go by their ratings alone."
+        f"called equivalent: {_named(unknown)}. It takes that pair and pairs of equal LoDs. In "
+        "the shares of draws in which a LoD is the cheapest, these go by their ratings alone."
     ]
 
 
