@@ -155,4 +155,16 @@ CAPTIONS: Final = {
         "curve is a (m − lowest) (highest − m), fitted to all: the SOS hypothesis (Hoßfeld, "
         "Schatz and Egger 2011). Far above it are eyes that split people."
     ),
+    "model-residuals": (
+        "Randomised quantile residuals of all ratings (Dunn and Smyth 1996), in order, against "
+        "those of a normal law; grey is where each of them lies in 95 % of normal samples. Right: "
+        "the same, the expected taken away. On the line the model of ratings fits; orange "
+        "diamonds lie outside the grey band, of which one in twenty may."
+    ),
+    "ends-of-the-scale": (
+        "How often the lowest and the highest rating were given (symbols), and in which range "
+        "they would lie in 95 % of studies like this one drawn from the model (bars). Above: per "
+        "LoD and distance, n counts ratings. Below: every person, in the order of their share. "
+        "People who avoid the ends lie below their bars, and a few who like them above."
+    ),
 }

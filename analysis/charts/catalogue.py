@@ -22,11 +22,13 @@ from analysis.charts import (
     curves,
     decision,
     detection,
+    ends,
     forest,
     heat,
     joint,
     pareto,
     people,
+    residuals,
     scales,
     spread,
     trends,
@@ -137,6 +139,9 @@ CHARTS: Final = (
           course.course_table),
     Chart("rating-spread", "people", spread.SPREAD, spread.spread_of_ratings,
           spread.spread_table),
+    Chart("model-residuals", "people", residuals.RESIDUALS, residuals.residual_chart,
+          residuals.residual_quantiles),
+    Chart("ends-of-the-scale", "people", ends.ENDS, ends.ends_chart, ends.ends_table),
 )  # fmt: skip
 
 

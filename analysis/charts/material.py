@@ -8,6 +8,9 @@ from functools import cached_property
 import pandas as pd
 
 from analysis.costs.cost import Costs
+from analysis.deciding import rng_of
+from analysis.diagnostics.predicted import predicted_shares
+from analysis.diagnostics.residuals import quantile_residuals
 from analysis.inference import Inference, infer
 from analysis.screening.flags import flags_of
 from analysis.screening.signals import observer_signals
@@ -19,14 +22,17 @@ from analysis.tables.reading import Tables
 class Material:
     """One study's tables, their costs, and what follows from them, worked out when first needed.
 
-    ``inferred`` and ``sensitivity`` (the verdicts without flagged people) are what the report has
-    worked out already.
+    ``inferred``, ``sensitivity`` (the verdicts without flagged people), ``diagnosed`` (the quantile
+    residuals) and ``predicted`` (shares of the scale's ends) are what the report has worked out
+    already.
     """
 
     tables: Tables
     costs: Costs | None = None
     inferred: Inference | None = None
     sensitivity: pd.DataFrame | None = None
+    diagnosed: pd.DataFrame | None = None
+    predicted: pd.DataFrame | None = None
 
     @property
     def is_simulated(self) -> bool:
@@ -50,3 +56,19 @@ class Material:
             return self.inferred
         weights = observer_weights(self.signals)
         return infer(self.tables, weights=weights or None, costs=self.costs)
+
+    @cached_property
+    def residuals(self) -> pd.DataFrame:
+        """The ratings' randomised quantile residuals; empty without a model."""
+        realism = self.inference.realism
+        if self.diagnosed is not None or realism is None:
+            return pd.DataFrame() if self.diagnosed is None else self.diagnosed
+        return quantile_residuals(realism, rng_of("residuals"))
+
+    @cached_property
+    def ends(self) -> pd.DataFrame:
+        """How often the scale's ends were given and the model expects them; empty without one."""
+        realism = self.inference.realism
+        if self.predicted is not None or realism is None:
+            return pd.DataFrame() if self.predicted is None else self.predicted
+        return predicted_shares(realism, rng_of("ends"))
