@@ -8,16 +8,27 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Final, Literal
 
-from sqlalchemy import select
+from sqlalchemy import bindparam, or_, select
 from sqlalchemy.orm import Session
 
 from study.data.consents import CONSENTED, agrees_to_health
+from study.data.errands import Errand
+from study.data.prepared import Prepared, table_of
 from study.data.schema import EventRow
 from study.design.definition import StudyDefinition
 
 CheckName = Literal["device_check", "calibration", "eyesight"]
 CHECKS: Final[tuple[CheckName, ...]] = ("device_check", "calibration", "eyesight")
 """In the order in which they come; the name of each is its event's kind and its page."""
+_E: Final = table_of(EventRow)
+_EVENTS: Final = Prepared(
+    select(_E.c.kind, _E.c.payload)
+    .where(
+        _E.c.participant_id == bindparam("who"),
+        or_(*(_E.c.kind == kind for kind in (*CHECKS, CONSENTED))),
+    )
+    .order_by(_E.c.id)
+)
 
 
 def wanted(definition: StudyDefinition) -> tuple[CheckName, ...]:
@@ -37,6 +48,14 @@ def done_checks(
         .order_by(EventRow.id)
     )
     return done_in([(kind, payload) for kind, payload in session.execute(query)], definition)
+
+
+def doing(who: Any, definition: StudyDefinition) -> Errand[frozenset[str]]:
+    """Return the same as an errand; ``who`` is the participant's row."""
+    if not wanted(definition):
+        return frozenset()
+    rows = yield _EVENTS, {"who": who.id}
+    return done_in([(row.kind, row.payload) for row in rows], definition)
 
 
 def done_in(

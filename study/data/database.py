@@ -54,6 +54,8 @@ class Database:
         self.recent: dict[int, tuple[float, Any]] = {}
         self._reading_engine = reading_engine(engine)
         self.group = GroupCommit(engine) if engine.dialect.name == "sqlite" else None
+        # Of a file connections stay good; fetching one from the pool takes longer than most looks.
+        self._idle: list[Eyes] = []
         self._session: ContextVar[tuple[Session, bool] | None] = ContextVar("session", default=None)
 
     @contextmanager
@@ -95,8 +97,14 @@ class Database:
         if outer is not None:
             outer[0].flush()
             return look(outer[0].connection(), make)
-        with self._reading_engine.begin() as connection:
-            return look(connection, make)
+        if self.group is None:
+            with self._reading_engine.begin() as connection:
+                return look(connection, make)
+        eyes = self._idle.pop() if self._idle else self.eyes()
+        try:
+            return eyes.look(make)
+        finally:
+            self._idle.append(eyes)
 
     def eyes(self) -> Eyes:
         """Return a connection of one's own for reading, one errand after the other."""
@@ -124,6 +132,8 @@ class Database:
 
     def close(self) -> None:
         """Close every connection."""
+        while self._idle:
+            self._idle.pop().close()
         self.engine.dispose()
 
 

@@ -6,13 +6,15 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime, timedelta
-from typing import Any, Final
+from typing import Any, Final, Literal
 
-from sqlalchemy import select
+from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
 from study.data.devices import read_device
+from study.data.errands import Errand
+from study.data.prepared import Prepared, table_of
 from study.data.refusals import WithdrawnError
 from study.data.schema import ParticipantRow, SessionRow
 from study.data.studies import Study
@@ -20,6 +22,14 @@ from study.data.studies import Study
 IDLE: Final = timedelta(minutes=30)
 """A sitting ends, and an arm's lease runs out, after this long without a sign of life."""
 SEEN_AGAIN: Final = timedelta(seconds=15)  # do not write "still here" more often than this
+
+
+By = Literal["id", "token_hash", "public_id"]
+_P: Final = table_of(ParticipantRow)
+_FIND: Final = {
+    name: Prepared(select(*_P.c).where(_P.c[name] == bindparam("value")))
+    for name in ("id", "token_hash", "public_id")
+}
 
 
 @dataclass(frozen=True)
@@ -46,11 +56,7 @@ class Participant:
 
 def by_token(db: Database, token: str) -> Participant | None:
     """Return whom a token belongs to, or None; those who withdrew are nobody's any more."""
-    with db.reading() as session:
-        row = session.scalar(
-            select(ParticipantRow).where(ParticipantRow.token_hash == token_hash(token))
-        )
-        return None if row is None else record_of(row)
+    return db.look(lambda: _reading("token_hash", token_hash(token)))
 
 
 def by_public_id(db: Database, study: Study, public_id: str) -> Participant | None:
@@ -61,9 +67,18 @@ def by_public_id(db: Database, study: Study, public_id: str) -> Participant | No
 
 def by_name(db: Database, public_id: str) -> Participant | None:
     """Return a participant of any study by pseudonym, or None."""
-    with db.reading() as session:
-        row = session.scalar(select(ParticipantRow).where(ParticipantRow.public_id == public_id))
-        return None if row is None else record_of(row)
+    return db.look(lambda: _reading("public_id", public_id))
+
+
+def finding(by: By, value: object) -> Errand[Any | None]:
+    """Find somebody's row to read; None for nobody."""
+    rows = yield _FIND[by], {"value": value}
+    return rows[0] if rows else None
+
+
+def _reading(by: By, value: object) -> Errand[Participant | None]:
+    row = yield from finding(by, value)
+    return None if row is None else record_of(row)
 
 
 def by_code(db: Database, code: str) -> Participant | None:
@@ -121,7 +136,7 @@ def touch(session: Session, row: ParticipantRow, now: datetime) -> SessionRow:
     return sitting
 
 
-def record_of(row: ParticipantRow) -> Participant:
+def record_of(row: Any) -> Participant:
     """Return a row as the record that pages work with."""
     return Participant(**{name: getattr(row, name) for name in Participant.__dataclass_fields__})
 

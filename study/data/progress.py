@@ -11,13 +11,12 @@ from dataclasses import dataclass
 from typing import Any, Final, Literal
 
 from study.data import consents, events, pauses, trials
-from study.data.checks import CHECKS, done_checks, wanted
+from study.data.checks import CHECKS, doing, done_checks, wanted
 from study.data.database import Database
 from study.data.errands import Errand
 from study.data.events import Recorded
-from study.data.participants import Participant, locked
+from study.data.participants import Participant, finding, locked
 from study.data.refusals import NotReachedError
-from study.data.schema import ParticipantRow
 from study.data.studies import by_id
 from study.data.trials import Trial
 from study.design.definition import StudyDefinition
@@ -67,15 +66,19 @@ class Step:
 def current_step(db: Database, participant: Participant) -> Step:
     """Return where a participant is, read from the database."""
     definition = by_id(db, participant.study_id).definition
-    with db.reading() as session:
-        row = session.get(ParticipantRow, participant.id)
-        if row is None or row.public_id != participant.public_id:
-            return Step("withdrawn")
-        early = early_step(row, definition, done_checks(session, row.id, definition))
-        if early is not None:
-            return Step(early)
-        mine = trials.trials_of(session, row.id, open_only=True)
-        pause = pauses.due_pause(session, row.id, definition, mine)
+    return db.look(lambda: _stepping(participant, definition))
+
+
+def _stepping(participant: Participant, definition: StudyDefinition) -> Errand[Step]:
+    who = yield from finding("id", participant.id)
+    if who is None or who.public_id != participant.public_id:
+        return Step("withdrawn")
+    done = () if who.instructed_at else (yield from doing(who, definition))
+    early = early_step(who, definition, done)
+    if early is not None:
+        return Step(early)
+    mine = yield from trials.reading(who)
+    pause = yield from pauses.pausing(who, definition, mine)
     return step_among(mine, pause)
 
 
@@ -105,9 +108,7 @@ def step_among(mine: Sequence[Trial], pause: Pause | None) -> Step:
     return Step(name, open_trial, open_trial.number, len(alike))
 
 
-def early_step(
-    row: ParticipantRow, definition: StudyDefinition, done: Collection[str]
-) -> StepName | None:
+def early_step(row: Any, definition: StudyDefinition, done: Collection[str]) -> StepName | None:
     """Return the step of someone who has not begun the trials, or None.
 
     ``done`` are the checks before the clips that are done (``study.data.checks``).

@@ -6,23 +6,18 @@ They do what ``participants.locked`` and ``participants.touch`` do, in prepared 
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from sqlalchemy import bindparam, select, update
 
 from study.data.errands import Errand
-from study.data.participants import IDLE, SEEN_AGAIN, Participant, token_hash, touch
+from study.data.participants import IDLE, SEEN_AGAIN, By, Participant, token_hash, touch
 from study.data.prepared import Prepared, table_of
 from study.data.refusals import WithdrawnError
 from study.data.schema import ParticipantRow, SessionRow
 
-By = Literal["id", "token_hash", "public_id"]
 _P: Final = table_of(ParticipantRow)
 _S: Final = table_of(SessionRow)
-_FIND: Final = {
-    name: Prepared(select(*_P.c).where(_P.c[name] == bindparam("value")))
-    for name in ("id", "token_hash", "public_id")
-}
 _LOCK: Final = {
     name: Prepared(select(*_P.c).where(_P.c[name] == bindparam("value")).with_for_update())
     for name in ("id", "token_hash", "public_id")
@@ -54,12 +49,6 @@ def by_token(token: str) -> tuple[By, str]:
 def locking(by: By, value: object) -> Errand[Any | None]:
     """Find somebody's row, on which others who write about them wait; None for nobody."""
     rows = yield _LOCK[by], {"value": value}
-    return rows[0] if rows else None
-
-
-def finding(by: By, value: object) -> Errand[Any | None]:
-    """Find somebody's row to read; None for nobody."""
-    rows = yield _FIND[by], {"value": value}
     return rows[0] if rows else None
 
 

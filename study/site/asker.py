@@ -13,9 +13,9 @@ from fastapi import Request
 
 from study.data import studies
 from study.data.errands import Errand
-from study.data.participants import IDLE
+from study.data.participants import IDLE, By, finding
 from study.data.refusals import WithdrawnError
-from study.data.senders import By, by_token, finding, locking
+from study.data.senders import by_token, locking
 from study.data.studies import Study
 from study.site.access import PARTICIPANT_COOKIE, WITHDRAWN, ElsewhereError, ForgedError, check_csrf
 from study.site.place import Place

@@ -68,6 +68,11 @@ class Place:
         """Render a template into a page."""
         return HTMLResponse(self.pages.get_template(template).render(values), status_code=status)
 
+    def warm_up(self) -> None:
+        """Compile every page now: the first of a crowd would do so at once in many threads."""
+        for name in self.pages.list_templates():
+            self.pages.get_template(name)
+
 
 def _environment(version: str) -> jinja2.Environment:
     pages = jinja2.Environment(

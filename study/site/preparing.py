@@ -51,14 +51,14 @@ def state(
         "fits": ready.fits,
         "is_ready": False,
         "progress": round(ready.progress, 4),
-        "wait": _wait(here, visitor, ready),
+        "wait": "",
         "clips": [],
     }
-    if not ready.is_ready:
-        return news
-    leased = arms.assign(here.db, visitor.participant, screen=screen)
+    leased = arms.assign(here.db, visitor.participant, screen=screen) if ready.is_ready else None
     clips = None if leased is None else _clips(here, leased)
-    return news if clips is None else {**news, "is_ready": True, "clips": clips}
+    if clips is None:
+        return {**news, "wait": _wait(here, visitor, ready)}
+    return {**news, "is_ready": True, "clips": clips}
 
 
 def _clips(here: Here, participant: Participant) -> list[dict[str, Any]] | None:
