@@ -178,9 +178,10 @@ class FrameRenderer:
         for view in shown:
             self._picture.use_rectangle(view.rectangle)
             queries |= self._passes.draw(view, time_s, wireframe=self.wireframe)
-        for view in shown:
-            self._passes.draw_outlines(view, self._picture.outlines, wireframe=self.wireframe)
-        self._picture.smooth_edges(shown, is_plain=is_plain)
+        tiles = self._picture.find_edges(shown)
+        for view, own in zip(shown, tiles, strict=True):
+            self._passes.draw_outlines(view, self._picture.outlines, own, wireframe=self.wireframe)
+        self._picture.smooth_edges(shown, tiles, is_plain=is_plain)
         for view in shown:
             self._picture.use_rectangle(view.rectangle)
             self._passes.draw_hair(view)

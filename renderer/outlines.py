@@ -13,6 +13,10 @@ from typing import Any, Final
 
 import moderngl
 
+from renderer.boxes import Box
+from renderer.edge_tiles import EdgeTiles
+from renderer.program import build_program
+
 SAMPLES: Final = 4  # llvmpipe's maximum
 # What meets other things at the same depth has a mark; in the picture alpha is one more. Parts of
 # bystanders count on from BYSTANDER.
@@ -30,14 +34,19 @@ class Outlines:
         # Two targets, not one with colours masked: llvmpipe 22 writes masked samples all the same.
         self._bare = gl.framebuffer([], self._depth)
         self._marked = gl.framebuffer([self._marks], self._depth)
+        self._nothing = build_program(gl, "boxes.vert", fragment="mark.frag")
 
-    def clear(self) -> None:
-        """Leave nothing but the far plane."""
-        self._marked.scissor = (0, 0, *self._size)
-        self._marked.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+    def begin(self, rectangle: Box, tiles: EdgeTiles) -> None:
+        """Draw depth alone from now on, into a view's rectangle; its ``tiles`` are cleared.
 
-    def begin(self, rectangle: tuple[int, int, int, int]) -> None:
-        """Draw depth alone from now on, into x, y, width, height from the lower left."""
+        What lies elsewhere is never read.
+        """
+        self._marked.use()
+        self._marked.viewport = self._marked.scissor = (0, 0, *self._size)
+        self._gl.enable_only(moderngl.DEPTH_TEST)
+        self._gl.depth_func = "1"
+        tiles.runs.draw(self._nothing, z=1.0, u_mark=0.0)
+        self._gl.depth_func = "<"
         for target in (self._marked, self._bare):
             target.use()
             target.viewport = rectangle

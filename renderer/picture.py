@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import Final
 
 import moderngl
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from renderer.bloom import SHARE, Bloom
 from renderer.camera import View
+from renderer.edge_tiles import EdgeFinder, EdgeTiles
 from renderer.edges import Edges
 from renderer.outlines import Outlines
 from renderer.program import build_program
@@ -37,6 +38,7 @@ class Picture:
         depth.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self.target = gl.framebuffer([self._radiance], depth)
         self.outlines = Outlines(gl, size)
+        self._finder = EdgeFinder(gl, self._radiance, depth)
         self._edges = Edges(gl, self._radiance, depth)
         self._display = gl.framebuffer([gl.texture(size, 4)])
         self._bloom = Bloom(gl, size, views=views)
@@ -45,7 +47,6 @@ class Picture:
 
     def begin(self) -> None:
         """Clear the targets and make the radiance's the one that is drawn to."""
-        self.outlines.clear()
         self.target.use()
         self.target.viewport = (0, 0, *self.size)
         self.target.scissor = (0, 0, *self.size)
@@ -58,9 +59,15 @@ class Picture:
         self.target.viewport = rectangle
         self.target.scissor = rectangle
 
-    def smooth_edges(self, views: Iterable[View], *, is_plain: bool = False) -> None:
+    def find_edges(self, views: Sequence[View]) -> list[EdgeTiles]:
+        """Return where each view may have edges, after what is opaque has been drawn."""
+        return self._finder.find(views)
+
+    def smooth_edges(
+        self, views: Sequence[View], tiles: Sequence[EdgeTiles], *, is_plain: bool = False
+    ) -> None:
         """Smooth what ``outlines`` has edges of: for the tone curve, or as the mean of radiance."""
-        self._edges.smooth(views, self.outlines, exposure=EXPOSURE, is_plain=is_plain)
+        self._edges.smooth(views, tiles, self.outlines, exposure=EXPOSURE, is_plain=is_plain)
 
     def radiance(self) -> Radiance:
         """Return the linear radiance, (height, width, 3) float32 Rec. 709, first row on top.

@@ -8,6 +8,7 @@ from typing import Final
 import moderngl
 
 from renderer.camera import CameraUniforms, View
+from renderer.edge_tiles import EdgeTiles
 from renderer.eye.eyes import Eyes
 from renderer.outlines import Outlines
 from renderer.scene import Scene
@@ -65,17 +66,20 @@ class ViewPasses:
         if "hair" in self._names:
             self._scene.head.draw_hair(**view.uniforms, light=self._scene.light)
 
-    def draw_outlines(self, view: View, outlines: Outlines, *, wireframe: bool = False) -> None:
+    def draw_outlines(
+        self, view: View, outlines: Outlines, tiles: EdgeTiles, *, wireframe: bool = False
+    ) -> None:
         """Draw where things of the last ``draw`` of a view end, as far as they are opaque."""
-        outlines.begin(view.rectangle)
+        outlines.begin(view.rectangle, tiles)
+        clip = view.projection @ view.view_matrix
         if "head" in self._names:
-            self._scene.head.draw_outlines(outlines, **view.uniforms)
+            self._scene.head.draw_outlines(outlines, tiles, clip, camera_mm=view.position_mm)
         if "eyes" in self._names:
             self._gl.wireframe = wireframe
             with outlines.marking():
                 for eye in view.eyes:
                     self._eyes.draw_outline(
-                        eye, view_matrix=view.view_matrix, projection=view.projection
+                        eye, tiles, view_matrix=view.view_matrix, projection=view.projection
                     )
             self._gl.wireframe = False
         if "bystanders" in self._names:

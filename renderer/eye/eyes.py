@@ -17,6 +17,7 @@ import numpy as np
 from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.edge_tiles import EdgeTiles
 from renderer.eye.cube_size import cube_px
 from renderer.eye.kept import Kept
 from renderer.eye.lids import LidRims
@@ -99,8 +100,10 @@ class Eyes:
                 self._set(models[0], camera, camera_mm, eye=eye)
                 models[0].mesh.render()
 
-    def draw_outline(self, eye: int, *, view_matrix: Any, projection: Any) -> None:
-        """Draw what ``draw`` draws as bare triangles that mark their samples."""
+    def draw_outline(
+        self, eye: int, tiles: EdgeTiles, *, view_matrix: Any, projection: Any
+    ) -> None:
+        """Draw what ``draw`` draws as bare triangles that mark their samples, on ``tiles``."""
         models = self._drawn(eye)
         placed = {
             "u_view_matrix": view_matrix,
@@ -111,7 +114,7 @@ class Eyes:
             if len(models) > 1:
                 self._morph(eye).draw_outline(placed, share=self._shares[eye][1][1])
             else:
-                models[0].outline.draw(placed)
+                models[0].outline.draw(placed, tiles)
 
     def shade(self, eye: int, *, view_matrix: Any, projection: Any, camera_mm: Any) -> None:
         """Prepare ``draw`` for a camera, outside of its queries and wire frames.

@@ -10,7 +10,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.bare_mesh import BareMesh
 from renderer.detail import Detail
+from renderer.edge_tiles import EdgeTiles
 from renderer.eye.anatomy import APEX_MM, GLOBE_RADIUS_MM
 from renderer.eye.geometry import Mesh, eye_mesh
 from renderer.eye.lids import LidRims
@@ -82,12 +84,13 @@ class Outline:
 
     def __init__(self, gl: moderngl.Context, mesh: Mesh) -> None:
         self._program = build_program(gl, "eye.vert", fragment="mark.frag")
-        self._mesh = vertex_array(gl, self._program, mesh)
+        self._mesh = BareMesh(gl, self._program, mesh.positions, mesh.triangles)
 
-    def draw(self, values: dict[str, Any]) -> None:
-        """Draw it into the current target."""
+    def draw(self, values: dict[str, Any], tiles: EdgeTiles) -> None:
+        """Draw it into the current target where ``tiles`` are."""
         self._program.set(**values, u_mark=EYE / 255.0)
-        self._mesh.render()
+        to_world = values["u_eye_to_world"]
+        self._mesh.draw(values["u_projection"] @ values["u_view_matrix"] @ to_world, tiles)
 
 
 class Silhouette:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -54,6 +55,8 @@ class CellMesh:
             parts.append(part)
             first += part.size
         used, numbers = _by_first_use(np.concatenate(parts))
+        self.points_mm: Floats = rows[used, :3]
+        self.triangles: Indices = numbers.reshape(-1, 3)
         self._used = source[used]
         self._gl = gl
         self._index = gl.buffer(numbers.astype(np.int32).tobytes())
@@ -94,6 +97,19 @@ class CellMesh:
                 program.gl_program, [entry for entry in content if len(entry) > 2], self._index
             )
         return self._arrays[key]
+
+
+def joined(meshes: Sequence[CellMesh], corners: Floats | None = None) -> tuple[Floats, Indices]:
+    """Return points (n, 3) and triangles (m, 3) of several meshes, and of loose ``corners``."""
+    points = [mesh.points_mm for mesh in meshes]
+    triangles = [mesh.triangles for mesh in meshes]
+    if corners is not None:
+        points.append(corners)
+        triangles.append(np.arange(len(corners)).reshape(-1, 3))
+    firsts = np.cumsum([0] + [len(part) for part in points])
+    return np.concatenate(points), np.concatenate(
+        [part + first for part, first in zip(triangles, firsts, strict=False)]
+    )
 
 
 def unroll(turn: Floats, triangles: Indices) -> tuple[Indices, Indices]:

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from renderer.body.makehuman import Floats
 from renderer.camera import eye_centre_mm
 from renderer.light import Sky
-from renderer.program import Program, build_program
+from renderer.program import build_program
 from renderer.spherical_harmonics import sh_basis
 
 RADIUS_MM: Final = 12.6  # a little more than the globe's
@@ -32,24 +32,20 @@ COSINE_LOBE: Final = np.array([1.0] + 3 * [2 / 3] + 5 * [1 / 4])  # Ramamoorthi,
 class Fornix:
     """Both eyes' folds, each a flat patch that faces forwards and a wall on the temple's side."""
 
-    def __init__(self, gl: moderngl.Context, depth: Program) -> None:
-        """``depth`` is the program that draws bare triangles."""
+    def __init__(self, gl: moderngl.Context) -> None:
         self._program = build_program(gl, "depth.vert", fragment="fornix.frag")
-        corners = np.concatenate([part(eye) for eye in (0, 1) for part in (disc, wall)]).astype(
-            np.float32
-        )
-        content = [(gl.buffer(corners.tobytes()), "3f", "in_position")]
-        self._discs = gl.vertex_array(self._program.gl_program, content)
-        self._bare = gl.vertex_array(depth.gl_program, content)
+        corners = gl.buffer(fold_triangles().astype(np.float32).tobytes())
+        self._folds = gl.vertex_array(self._program.gl_program, [(corners, "3f", "in_position")])
 
     def draw(self, world_to_clip: npt.ArrayLike, sky: Sky) -> None:
         """Draw both, opaque, into the current target."""
         self._program.set(u_world_to_clip=world_to_clip, u_radiance=radiance(sky))
-        self._discs.render(moderngl.TRIANGLES)
+        self._folds.render(moderngl.TRIANGLES)
 
-    def draw_depth(self) -> None:
-        """Draw both with the program of bare triangles as it is set."""
-        self._bare.render(moderngl.TRIANGLES)
+
+def fold_triangles() -> Floats:
+    """Return the corners (3 n, 3) of both folds' triangles in world space."""
+    return np.concatenate([part(eye) for eye in (0, 1) for part in (disc, wall)])
 
 
 def radiance(sky: Sky) -> Floats:

@@ -12,14 +12,16 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.bare_mesh import BareMesh
 from renderer.body.makehuman import Floats
 from renderer.camera import Matrix, eye_centre_mm
 from renderer.clip import ClipSpec
+from renderer.edge_tiles import EdgeTiles
 from renderer.eye.lids import LidRims
-from renderer.head.buffers import CellMesh, TilePyramid
+from renderer.head.buffers import CellMesh, TilePyramid, joined
 from renderer.head.clothing import knit_tile
 from renderer.head.face_mesh import face_mesh
-from renderer.head.fornix import Fornix
+from renderer.head.fornix import Fornix, fold_triangles
 from renderer.head.growing import grow_all_hair
 from renderer.head.lid_pose import lid_poses
 from renderer.head.lid_rims import lid_rims
@@ -55,7 +57,7 @@ class Head:
             for constants in SKIN_KINDS
         ]
         self._strand_programs = strand_programs(gl)
-        self._fornix = Fornix(gl, self._programs["depth"])
+        self._fornix = Fornix(gl)
         self._skin_maps = SkinMaps(gl, face_mesh())
         self._knit = TilePyramid(gl, knit_tile())
         self._face = face_mesh(poses)
@@ -66,6 +68,7 @@ class Head:
         self._distant = [
             item.distant or item.mesh for name, item in skin.items() if name not in ("fine", "rest")
         ]
+        self._bare = self._bare_meshes()
         self._open_sky = open_sky(
             gl, self._surfaces, whole=self.draw_depth, without_lids=self._draw_depth_without_lids
         )
@@ -76,6 +79,19 @@ class Head:
         self._lit_by: Light | None = None
         # Whether cameras get the fine meshes; None decides by their distance.
         self.is_close: bool | None = None
+
+    def _bare_meshes(self) -> dict[str, BareMesh]:
+        """Return what outlines are drawn of: skin near and far, and what has marks."""
+        depth, mark = self._programs["depth"], self._programs["mark"]
+        # Conjunctiva goes on where its solid part ends, so there is no edge.
+        near, far = [*self._close, *self._veils], [*self._distant, *self._veils]
+        folds = fold_triangles()
+        return {
+            "close": BareMesh(self.gl, depth, *joined(near, folds)),
+            "distant": BareMesh(self.gl, depth, *joined(far, folds)),
+            "cap": BareMesh(self.gl, mark, *joined([self._mesh("cap")])),
+            "cloth": BareMesh(self.gl, mark, *joined([self._mesh("cloth")])),
+        }
 
     def draw(
         self, *, view_matrix: Matrix, projection: Matrix, camera_mm: npt.ArrayLike, light: Light
@@ -103,30 +119,20 @@ class Head:
         self._mesh("cloth").draw(fabric, clip)
 
     def draw_outlines(
-        self,
-        outlines: Outlines,
-        *,
-        view_matrix: Matrix,
-        projection: Matrix,
-        camera_mm: npt.ArrayLike,
+        self, outlines: Outlines, tiles: EdgeTiles, clip: Matrix, *, camera_mm: npt.ArrayLike
     ) -> None:
         """Draw the outlines of what ``draw`` draws; what is marked stays marked if drawn later."""
-        camera = np.asarray(camera_mm, dtype=float)
-        clip = projection @ view_matrix
-        program = self._programs["depth"]
-        program.set(u_world_to_clip=clip)
+        is_close = self._is_close_to(float(np.linalg.norm(np.asarray(camera_mm))))
+        self._programs["depth"].set(u_world_to_clip=clip)
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        # Conjunctiva goes on where its solid part ends, so there is no edge.
-        for mesh in [*self._skin(float(np.linalg.norm(camera))), *self._veils]:
-            mesh.draw(program, clip, camera_mm=camera)
-        self._fornix.draw_depth()
+        self._bare["close" if is_close else "distant"].draw(clip, tiles)
         marking = self._programs["mark"]
         with outlines.marking():
             marking.set(u_world_to_clip=clip, u_mark=HAIR / 255.0)
-            self._mesh("cap").draw(marking, clip, camera_mm=camera)
+            self._bare["cap"].draw(clip, tiles)
             marking.set(u_mark=CLOTH / 255.0)
             self.gl.disable(moderngl.CULL_FACE)
-            self._mesh("cloth").draw(marking, clip)
+            self._bare["cloth"].draw(clip, tiles)
             self.gl.enable(moderngl.CULL_FACE)
 
     def draw_hair(

@@ -12,7 +12,8 @@ import pytest
 from renderer.camera import View, look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.edges import Edges, depth_step
+from renderer.edge_tiles import depth_step
+from renderer.edges import Edges
 from renderer.frame import FrameRenderer
 from renderer.outlines import EYE
 from renderer.picture import EXPOSURE, Picture
@@ -67,7 +68,8 @@ class Stage:
         self.picture.use_rectangle(VIEW.rectangle)
         for corners, z_mm, radiance, mark in self.things:
             self._render(corners, z_mm, radiance, radiance, radiance, 1.0 + mark)
-        self.picture.outlines.begin(VIEW.rectangle)
+        tiles = self.picture.find_edges([VIEW])
+        self.picture.outlines.begin(VIEW.rectangle, tiles[0])
         for corners, z_mm, _, mark in self.things:
             if not mark:
                 self._render(corners, z_mm, 0.0, 0.0, 0.0, 0.0)
@@ -76,7 +78,7 @@ class Stage:
                 if mark:
                     self._render(corners, z_mm, *([mark / 255.0] * 4))
         if is_smooth:
-            self.picture.smooth_edges([VIEW], is_plain=is_plain)
+            self.picture.smooth_edges([VIEW], tiles, is_plain=is_plain)
         return self.picture.radiance()[..., 0]
 
 
