@@ -75,15 +75,16 @@ class IrisMaps:
     cavity: Field
 
 
-def iris_maps(seed: int, colour: str, *, size_px: int, base_px: int = BASE_PX) -> IrisMaps:
+def iris_maps(seed: int, colour: str, *, size_px: int, base_px: int | None = None) -> IrisMaps:
     """Return the maps of an iris with ``size_px`` texels a side, from 1 to ``base_px``.
 
-    Every size is a box filter in linear light of the same iris, baked once at ``base_px`` and
-    cached: a small base is baked much faster, for eyes that are never seen large.
+    Every size is a box filter in linear light of the same iris, baked once at ``base_px`` (BASE_PX
+    unless said) and cached: a small base is baked much faster, for eyes that are never seen large.
     Size 1 has the mean of the tissue between pupil and root, lying flat. Raises ValueError for an
     unknown colour or size.
     """
     family(colour)
+    base_px = base_px or BASE_PX
     check_size(size_px, base_px)
     return sized_maps(_kept(seed, colour, base_px), size_px)
 
