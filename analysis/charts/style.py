@@ -23,6 +23,7 @@ QUIET: Final = "#6b6b6b"
 FAINT: Final = "#dddddd"
 ALARM: Final = "#b3261e"
 SIMULATED: Final = "SIMULATED DATA"
+_GAP_PX: Final = 8  # between a title and that mark, at the figure's own resolution
 NO_RATINGS: Final = "No rating has been given yet."
 
 LOD_COLOURS: Final = {"low": "#D55E00", "medium": "#E69F00", "high": "#56B4E9", "ultra": "#0072B2"}
@@ -78,9 +79,11 @@ def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: b
     """Return an empty figure with its title, labelled across if the data are simulated."""
     figure = Figure(figsize=(width_in, height_in), layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
-    figure.suptitle(title, x=0.01, ha="left", fontsize=LARGE, fontweight="bold", color=INK)
+    heading = figure.suptitle(
+        title, x=0.01, ha="left", fontsize=LARGE, fontweight="bold", color=INK
+    )
     if is_simulated:
-        figure.text(
+        mark = figure.text(
             0.995,
             0.995,
             SIMULATED,
@@ -90,6 +93,8 @@ def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: b
             fontweight="bold",
             color=ALARM,
         )
+        if heading.get_window_extent().x1 > mark.get_window_extent().x0 - _GAP_PX:
+            heading.set_text(_in_two_lines(title))
         size = 11.0 * min(width_in, 2.2 * height_in) / 2.6
         figure.text(
             0.5,
@@ -105,6 +110,15 @@ def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: b
             zorder=0,
         )
     return figure
+
+
+def _in_two_lines(title: str) -> str:
+    """Break a title at the space nearest its middle."""
+    spaces = [i for i, letter in enumerate(title) if letter == " "]
+    if not spaces:
+        return title
+    place = min(spaces, key=lambda i: abs(i - len(title) / 2))
+    return f"{title[:place]}\n{title[place + 1 :]}"
 
 
 def message_figure(title: str, message: str, *, is_simulated: bool = False) -> Figure:
