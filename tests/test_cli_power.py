@@ -23,7 +23,9 @@ def test_power_of_the_recommended_study(capsys: pytest.CaptureFixture[str], tmp_
     own = ["--participants", "12,6", "--replicates", "3", "--jobs", "1", "--out", str(tmp_path)]
     assert main(["power", "lod", *own, "--noticed-margin", "0.3"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split()[-4:] == ["6", "people", "12", "people"]
+    assert lines[0].startswith("lod: 3 simulated studies of each number of people")
+    head = next(line for line in lines if line.startswith("distance"))
+    assert head.split()[-4:] == ["6", "people", "12", "people"]
     assert sum(line.startswith("macroscopic") for line in lines) >= 4
     assert any(line.startswith("SIMULATED people, 3 studies; brackets hold") for line in lines)
     told = json.loads((tmp_path / "power.json").read_text(encoding="utf-8"))
@@ -39,7 +41,8 @@ def test_the_thesiss_design_cannot_conclude_equivalence(
     assert main(["power", "thesis", *own]) == 0
     text = " ".join(capsys.readouterr().out.split())
     assert "Cannot be concluded, however many take part: equivalence of low at macroscopic" in text
-    assert "(nobody sees anything at medium)" in text
+    assert "high at near, low at medium, medium at medium, high at medium, ultra at medium" in text
+    assert "macroscopic, near and far: no LoD can be named as the cheapest" in text
 
 
 @pytest.mark.parametrize(

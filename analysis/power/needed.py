@@ -17,14 +17,15 @@ POWER: Final = 0.8
 class Needed:
     """People for ``power``: a number and the range that the simulation's own error leaves.
 
-    ``people`` is None where no simulated number reaches it; ``is_at_most`` says that the smallest
-    one does already. ``low`` and ``high`` are None beyond the simulated numbers.
+    ``people`` is None where no simulated number reaches it, not even ``most``; ``is_at_most`` says
+    that the smallest one does already. ``low`` and ``high`` are None beyond the simulated numbers.
     """
 
     power: float
     people: int | None
     low: int | None
     high: int | None
+    most: int
     is_at_most: bool = False
 
 
@@ -48,6 +49,7 @@ def needed_people(
         people=None if middle == inf else ceil(max(middle, people[0]) - 1e-9),
         low=None if least in (inf, -inf) else ceil(least - 1e-9),
         high=None if most in (inf, -inf) else ceil(most - 1e-9),
+        most=max(people),
         is_at_most=middle == -inf,
     )
 

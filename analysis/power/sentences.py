@@ -1,23 +1,49 @@
-"""What a simulation of power says, in plain sentences and in one table for the terminal."""
+"""What a simulation of power says, in plain sentences."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from typing import Any
 
 import pandas as pd
 
 from analysis.power.needed import POWER, Needed, needed_people
 from analysis.power.outcome import Outcome
-from analysis.wording import listed, number, percent
+from analysis.power.replicates import Scene
+from analysis.power.text_table import Row, as_records, by_people
+from analysis.wording import listed, percent
 
-Row = Mapping[str, Any]
+
+def opening_lines(scene: Scene, outcome: Outcome, study: str) -> list[str]:
+    """Return what was simulated, what the verdicts mean, and how to read the table."""
+    margins = scene.margins
+    sentences = [
+        f"{study}: {outcome.replicates} simulated studies of each number of people, who see what "
+        f'"{scene.truth.name}" assumes.',
+        f"Equivalent: shown, with {percent(margins.confidence)} confidence in each, to be rated at "
+        f"most {margins.realism_points:g} points below the best LoD and to be noticed beside it by "
+        f"at most {percent(margins.noticed_share)} of people beyond false alarms.",
+        "The table: how far below the best LoD each is assumed to be and who notices it beyond "
+        "false alarms (? where it never stands beside the best), the verdict that is right then "
+        "(– where none is), and how many studies come to it.",
+    ]
+    own = outcome.verdicts[~outcome.verdicts["lod"].isin(outcome.ranked)]
+    alike = own.groupby("distance")[["true_loss", "true_noticed"]].nunique().max().max()
+    if own["lod"].nunique() > 1 and alike <= 1:
+        sentences.append(
+            f"All {own['lod'].nunique()} LoDs without a rank are assumed to be alike at a "
+            "distance; a file for --truth can tell them apart."
+        )
+    return sentences
 
 
 def answer_lines(outcome: Outcome) -> list[str]:
     """Return one sentence per distance, then what the design cannot conclude."""
     rows = outcome.cheapest[outcome.cheapest["best"] != ""]
-    found = [_distance(own) for _, own in rows.groupby("distance", sort=False)]
+    barred = rows["cannot_conclude"] != ""
+    found = [_distance(own) for _, own in rows[~barred].groupby("distance", sort=False)]
+    for reason, own in rows[barred].groupby("cannot_conclude", sort=False):
+        where = listed(list(dict.fromkeys(own["distance"])))
+        found.append(f"{where}: no LoD can be named as the cheapest that is enough: {reason}.")
     single = _one_by_one(outcome.verdicts, outcome.ranked)
     return [*found, *single, *_cannot(outcome.verdicts)]
 
@@ -45,17 +71,15 @@ def needed_text(needed: Needed, *, short: bool = False) -> str:
     if needed.is_at_most:
         return f"{start}{needed.people} people or fewer"
     if needed.people is None:
-        return f"{start}more people than were simulated"
+        return f"{start}more than {needed.most} people"
     if needed.low is not None and needed.high is not None:
         return f"{start}about {needed.people} people ({needed.low} to {needed.high})"
     return f"{start}about {needed.people} people"
 
 
 def _distance(rows: pd.DataFrame) -> str:
-    own = _records(rows)
-    distance, right, reason = (own[0][key] for key in ("distance", "right_lod", "cannot_conclude"))
-    if reason:
-        return f"{distance}: no LoD can be named as the cheapest that is enough: {reason}."
+    own = by_people(rows)
+    distance, right = own[0]["distance"], own[0]["right_lod"]
     stays = [i for i in range(len(own)) if all(row["right"] >= POWER for row in own[i:])]
     row = own[stays[0]] if stays else own[-1]
     wrong = share_text(own[-1] if right == own[-1]["best"] else row, "too_cheap")
@@ -81,78 +105,38 @@ def _one_by_one(verdicts: pd.DataFrame, ranked: Collection[str]) -> Iterator[str
             for lod, each in rows.groupby("lod", sort=False)
             if (name := str(each["right_verdict"].iloc[0]))
         }
-        reached = [f"{lod} {needed_text(n, short=True)}" for lod, n in needed.items() if n.people]
-        beyond = [lod for lod, own_needed in needed.items() if own_needed.people is None]
-        if beyond:
-            reached.append(f"{listed(beyond)} more people than were simulated")
         if needed:
             aim = f"the right verdict in {percent(POWER)} of studies"
-            yield f"{distance}: {aim} takes {', '.join(reached)}."
+            yield f"{distance}: {aim} takes {', '.join(_needs(needed))}."
 
 
-def _cannot(verdicts: pd.DataFrame) -> list[str]:
+def _needs(needed: Mapping[str, Needed]) -> list[str]:
+    """Say what each LoD takes, those together that take more than was simulated."""
+    told = [
+        f"{needed_text(own, short=True)} for {lod}" for lod, own in needed.items() if own.people
+    ]
+    beyond = [lod for lod, own in needed.items() if own.people is None]
+    if beyond:
+        every = len(beyond) == len(needed) > 2
+        whom = f"each of the {len(beyond)} LoDs" if every else listed(beyond)
+        told.append(f"{needed_text(needed[beyond[0]], short=True)} for {whom}")
+    return told
+
+
+def _cannot(verdicts: pd.DataFrame) -> Iterator[str]:
+    """Yield what more people do not help: first what nobody sees, then what is not comparable."""
     rows = verdicts[verdicts["cannot_conclude"] != ""].drop_duplicates(["distance", "lod"])
+    is_unseen = rows["true_loss"].isna()
+    unseen = [f"{row['lod']} at {row['distance']}" for row in as_records(rows[is_unseen])]
+    if unseen:
+        yield f"Nothing can be concluded of {listed(unseen)}, which nobody sees."
     found: dict[tuple[str, bool], list[str]] = {}
-    for _, row in rows.iterrows():
-        is_whole = bool(pd.isna(row["different"]))
+    for row in as_records(rows[~is_unseen]):
         place = f"{row['lod']} at {row['distance']}"
+        is_whole = bool(pd.isna(row["different"]))
         found.setdefault((str(row["cannot_conclude"]), is_whole), []).append(place)
-    return [
-        f"Cannot be concluded, however many take part: {'anything' if is_whole else 'equivalence'} "
-        f"of {listed(places)} ({reason})."
-        for (reason, is_whole), places in found.items()
-    ]
-
-
-def table_lines(outcome: Outcome) -> Iterator[str]:
-    """Yield the share of right verdicts for each distance, LoD and number of people."""
-    head = [f"{n} people" for n in sorted(set(outcome.verdicts["participants"].astype(int)))]
-    lines = [["distance", "LoD", "assumed", "right verdict", *head]]
-    for _, rows in outcome.verdicts.groupby(["distance", "lod"], sort=False):
-        own = _records(rows)
-        name = str(own[0]["right_verdict"])
-        start = [own[0]["distance"], own[0]["lod"], _assumed(own[0]), name or "none"]
-        lines.append([*start, *(_cell(row, name) for row in own)])
-    yield from _aligned(lines)
-    rows = outcome.cheapest[outcome.cheapest["best"] != ""]
-    if rows.empty:  # no LoD has a place in an order
-        return
-    yield ""
-    lines = [["distance", "cheapest that is enough", *(f"named by {words}" for words in head)]]
-    for _, each in rows.groupby("distance", sort=False):
-        own = _records(each)
-        start = [own[0]["distance"], own[0]["right_lod"] or "–"]
-        lines.append([*start, *(_cell(row, "right") for row in own)])
-    yield from _aligned(lines, left=2)
-
-
-def _records(rows: pd.DataFrame) -> list[dict[str, Any]]:
-    """Return rows by rising number of people."""
-    return [
-        {str(k): v for k, v in row.items()}
-        for _, row in rows.sort_values("participants").iterrows()
-    ]
-
-
-def _cell(row: Row, name: str) -> str:
-    """Write the share of the right verdict; of "equivalent" where there is no right one."""
-    shown = name or "equivalent"
-    return "cannot" if pd.isna(row[shown]) else percent(float(row[shown]))
-
-
-def _assumed(row: Row) -> str:
-    if pd.isna(row["true_loss"]):
-        return "not shown"
-    seen = "?" if pd.isna(row["true_noticed"]) else percent(row["true_noticed"])
-    return f"{number(-row['true_loss'])} points, {seen}"
-
-
-def _aligned(lines: list[list[str]], *, left: int = 4) -> Iterator[str]:
-    """Yield rows with their columns under each other, the first ones to the left."""
-    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    for line in lines:
-        cells = [
-            f"{cell:<{width}}" if i < left else f"{cell:>{width}}"
-            for i, (cell, width) in enumerate(zip(line, widths, strict=True))
-        ]
-        yield "  ".join(cells).rstrip()
+    for (reason, is_whole), places in found.items():
+        what = "anything" if is_whole else "equivalence"
+        yield (
+            f"Cannot be concluded, however many take part: {what} of {listed(places)} ({reason})."
+        )

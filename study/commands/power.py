@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import sys
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
@@ -129,7 +129,8 @@ def run(options: argparse.Namespace) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of each job: small matrices, many jobs
     from analysis.power.outcome import outcome_of
     from analysis.power.replicates import Scene
-    from analysis.power.sentences import answer_lines, table_lines
+    from analysis.power.sentences import answer_lines, opening_lines
+    from analysis.power.text_table import table_lines
     from analysis.power.writing import write_power
     from study.design.definition import read_definition
     from study.planning import plans_of, studied_lods
@@ -149,16 +150,20 @@ def run(options: argparse.Namespace) -> int:
         title=f"Power of {definition.key}: studies with the right verdict (truth: {truth.name})",
         settings=_settings(definition, scene, options),
     )
-    print("\n".join(table_lines(outcome)))
-    print()
-    for line in answer_lines(outcome):
-        print("\n".join(textwrap.wrap(line, WIDTH, break_on_hyphens=False)))
+    _print_wrapped(opening_lines(scene, outcome, definition.key))
+    print("\n".join(["", *table_lines(outcome), ""]))
+    _print_wrapped(answer_lines(outcome))
     print(
         f"SIMULATED people, {options.replicates} studies; brackets hold the simulation's own error "
         "at 95 %."
     )
     print(", ".join(str(path) for path in files))
     return 0
+
+
+def _print_wrapped(lines: Iterable[str]) -> None:
+    for line in lines:
+        print("\n".join(textwrap.wrap(line, WIDTH, break_on_hyphens=False)))
 
 
 def _margins(definition: StudyDefinition, options: argparse.Namespace) -> Margins:

@@ -20,8 +20,9 @@ from analysis.power.outcome import Outcome, outcome_of
 from analysis.power.plan import Plan
 from analysis.power.quick import prepare
 from analysis.power.replicates import Scene, answers_of, simulate_studies
-from analysis.power.sentences import answer_lines, table_lines
+from analysis.power.sentences import answer_lines, opening_lines
 from analysis.power.tables import as_tables
+from analysis.power.text_table import table_lines
 from analysis.power.writing import write_power
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.population import POPULATION
@@ -155,7 +156,45 @@ def test_lods_without_a_rank_are_decided_one_by_one() -> None:
     assert found.verdicts["equivalent"].iloc[0] > 0.5
     (line,) = answer_lines(found)
     assert line.startswith("far: the right verdict in 80")
+    assert line.endswith(" for bare.")
     assert "named by" not in "\n".join(table_lines(found))
+
+
+def test_what_is_simulated_and_what_the_words_mean_stand_first(outcome: Outcome) -> None:
+    lines = opening_lines(scene((24, 48)), outcome, "mine")
+    assert lines[0].startswith("mine: 4 simulated studies of each number of people")
+    assert 'who see what "thesis" assumes' in lines[0]
+    assert "at most 0.5 points below the best LoD" in lines[1]
+    assert "at most 25\N{NO-BREAK SPACE}% of people beyond false alarms" in lines[1]
+    assert len(lines) == 3  # LoDs with a rank are not alike
+
+
+def test_what_nobody_sees_is_told_once_and_fills_no_rows(outcome: Outcome) -> None:
+    text = "\n".join(table_lines(outcome))
+    assert "near" not in text
+    told = [line for line in answer_lines(outcome) if "which nobody sees" in line]
+    assert told == [
+        "Nothing can be concluded of medium at macroscopic, low at near, medium at near and ultra "
+        "at near, which nobody sees."
+    ]
+
+
+def test_lods_that_take_too_many_people_are_told_together() -> None:
+    own = scene((4, 8), plan(8, [*PAIRS[:4], *CATCH]), truth="realism-margin")
+    rows = [
+        {"distance": "far", "lod": lod, "participants": n, "right_verdict": "equivalent"}
+        | {"equivalent": 0.1, "equivalent_low": 0.0, "equivalent_high": 0.3}
+        | {"true_loss": 0.1, "true_noticed": 0.0, "different": 0.0, "cannot_conclude": ""}
+        for lod in ("a", "b", "c")
+        for n in (4, 8)
+    ]
+    nothing = pd.DataFrame([{"distance": "far", "best": "", "cannot_conclude": ""}])
+    found = Outcome(pd.DataFrame(rows), nothing, 10, frozenset())
+    assert answer_lines(found) == [
+        "far: the right verdict in 80\N{NO-BREAK SPACE}% of studies takes more than 8 people for "
+        "each of the 3 LoDs."
+    ]
+    assert opening_lines(own, found, "mine")[-1].startswith("All 3 LoDs without a rank are assumed")
 
 
 def test_processes_share_the_work_and_change_nothing() -> None:
