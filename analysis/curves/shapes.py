@@ -18,11 +18,13 @@ from scipy.special import ndtr
 
 Floats = NDArray[np.float64]
 BENT_PRIORS: Final[Mapping[str, tuple[float, float]]] = {
+    "log_height": (0.0, 1.5),
     "log_width": (float(np.log(2.0)), 0.8),
     "bend": (0.0, 0.15),
 }
 """Where realism is lost: over about two octaves, less certain than what is noticed. By simulation:
-bends of 0.15 halve the bias of one sigmoid, those of 0.3 and more cost limits by size."""
+bends of 0.15 halve the bias of one sigmoid, those of 0.3 and more cost limits by size; a height as
+certain as that of what is noticed shows a loss where there is none."""
 
 _HEIGHT: Final = 50.0  # greater differences than any answer could tell
 _APART: Final = 1.0  # octaves between knots, at least
