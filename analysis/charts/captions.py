@@ -10,7 +10,8 @@ CAPTIONS: Final = {
         " the data leave open in which the LoD is the cheapest that is enough (those of a "
         "column add up to 100 %). Word: the verdict by the margins, LoDs being tested from "
         "the highest down until one fails. Frame: the answer, the cheapest LoD that was shown"
-        " to be enough. Milliseconds, where given, are per frame."
+        " to be enough. Milliseconds, where given, are per frame. Below: which verdicts hang on a "
+        "single person."
     ),
     "contrasts": (
         "Each LoD against the highest one at its distance, in the order of testing. Left: "
@@ -141,8 +142,10 @@ CAPTIONS: Final = {
         "top. Flagged people stand in red."
     ),
     "verdict-stability": (
-        "Every verdict with and without flagged people. A frame marks a verdict that differs "
-        "from the first row's."
+        "Every verdict with everyone, with and without flagged people, and without each single "
+        "person; of those without a flag only who moves a verdict has a row. A frame marks a "
+        "verdict that differs from the first row's. The last row says without how many of all "
+        "people, left out one at a time, the verdict stays."
     ),
     "session-course": (
         "How ratings drift and how long answers take while a session lasts. Left: rating "

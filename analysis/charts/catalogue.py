@@ -31,6 +31,7 @@ from analysis.charts import (
     residuals,
     scales,
     spread,
+    stability,
     trends,
 )
 from analysis.charts.captions import CAPTIONS
@@ -133,8 +134,8 @@ CHARTS: Final = (
     Chart("observers", "people", people.OBSERVERS, people.observers, people.observers_table),
     Chart("ratings-per-person", "people", heat.HEAT_MAP, heat.ratings_heat_map,
           heat.heat_table),
-    Chart("verdict-stability", "people", people.STABILITY, people.verdict_stability,
-          people.stability_table),
+    Chart("verdict-stability", "people", stability.STABILITY, stability.verdict_stability,
+          stability.stability_table),
     Chart("session-course", "people", course.COURSE, course.over_the_session,
           course.course_table),
     Chart("rating-spread", "people", spread.SPREAD, spread.spread_of_ratings,

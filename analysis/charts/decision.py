@@ -15,7 +15,8 @@ from matplotlib.patches import Rectangle
 
 from analysis.charts.forest import NO_VERDICT
 from analysis.charts.material import Material
-from analysis.charts.parts import distance_label, readable_on, records
+from analysis.charts.parts import distance_label, readable_on, records, wrapped
+from analysis.charts.stability import stability_sentence
 from analysis.charts.style import (
     INK,
     NORMAL,
@@ -66,7 +67,7 @@ def decision_chart(material: Material) -> Figure:
     lods = [lod for lod in lod_order(tables.ratings) if lod in set(table["lod"])][::-1]
     figure = new_figure(
         min(PAGE_WIDTH_IN, 1.4 + 1.4 * max(2, len(distances))),
-        1.0 + _ROW_IN * len(lods),
+        1.3 + _ROW_IN * len(lods),
         TITLE,
         is_simulated=tables.is_simulated,
     )
@@ -84,6 +85,10 @@ def decision_chart(material: Material) -> Figure:
     axes.set_yticks(range(len(lods)), lods)
     axes.tick_params(length=0, labelsize=NORMAL)
     axes.spines[:].set_visible(False)
+    told = stability_sentence(material)
+    if told:
+        chars = int(15 * figure.get_figwidth())
+        figure.supxlabel(wrapped(told, chars), fontsize=SMALL, color=INK)
     return figure
 
 

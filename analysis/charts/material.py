@@ -12,6 +12,7 @@ from analysis.deciding import rng_of
 from analysis.diagnostics.predicted import predicted_shares
 from analysis.diagnostics.residuals import quantile_residuals
 from analysis.inference import Inference, infer
+from analysis.leaving_out import verdicts_without_each
 from analysis.screening.flags import flags_of
 from analysis.screening.signals import observer_signals
 from analysis.screening.weights import observer_weights
@@ -72,3 +73,11 @@ class Material:
         if self.predicted is not None or realism is None:
             return pd.DataFrame() if self.predicted is None else self.predicted
         return predicted_shares(realism, rng_of("ends"))
+
+    @cached_property
+    def left_out(self) -> pd.DataFrame:
+        """Every verdict without each person, whoever it is."""
+        own = self.inference
+        return verdicts_without_each(
+            own.decisions, own.realism, own.noticing, comparisons=self.tables.comparisons
+        )

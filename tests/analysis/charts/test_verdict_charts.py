@@ -10,6 +10,7 @@ from analysis.charts import CHARTS
 from analysis.charts.decision import REFERENCE, decision_cells
 from analysis.charts.forest import contrasts
 from analysis.charts.material import Material
+from analysis.charts.stability import stability_sentence, stability_table
 from analysis.charts.style import INK
 from analysis.decision.verdict_tables import verdict_table
 
@@ -84,3 +85,33 @@ def test_without_costs_the_chart_says_what_to_give(material: Material, texts_of:
     chart = next(own for own in CHARTS if own.name == "realism-against-cost")
     said = [" ".join(text.split()) for text in texts_of(chart.draw(Material(material.tables)))]
     assert any("give the file that ocularist bench writes (--bench)" in text for text in said)
+
+
+def test_the_decision_says_which_verdicts_hang_on_one_person(
+    material: Material, drawn_small: dict[str, Figure], texts_of: Texts
+) -> None:
+    alone = material.left_out
+    told = stability_sentence(material)
+    said = " ".join(" ".join(texts_of(drawn_small["decision-chart"])).split())
+    assert told in said
+    moved = alone[alone["is_moved"]]
+    for (distance, lod), own in moved.groupby(["distance", "lod"]):
+        assert f"{lod} at {distance} ({len(own)} of 14)" in told
+    still = Material(material.tables, None, material.inference)
+    still.__dict__["left_out"] = alone.assign(is_moved=False)
+    assert stability_sentence(still) == "Leaving out any one of the 14 people changes no verdict."
+
+
+def test_who_moves_a_verdict_has_a_row(
+    material: Material, drawn_small: dict[str, Figure], texts_of: Texts
+) -> None:
+    table = stability_table(material)
+    assert set(table["people"]) >= {f"without S{i:03d}" for i in range(1, 15)}
+    alone = material.left_out
+    moving = {f"without {who}" for who in alone.loc[alone["is_moved"], "people"]}
+    said = texts_of(drawn_small["verdict-stability"])
+    assert {text for text in said if text.startswith("without S")} == moving
+    stays = (~alone["is_moved"]).groupby([alone["distance"], alone["lod"]]).sum()
+    assert sorted(text for text in said if text.endswith("/14")) == sorted(
+        f"{count}/14" for count in stays
+    )
