@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, ClassVar
 
@@ -23,8 +23,8 @@ from renderer.eye.lids import LidRims
 from renderer.eye.micro_relief import micro_relief_tile
 from renderer.eye.sclera import ScleraMaps
 from renderer.eye.subsurface import Tissue
-from renderer.iris import maps as iris_module
 from renderer.iris.maps import IrisMaps
+from renderer.iris.source import Iris, iris_of
 from renderer.light import Light, Sky
 from renderer.program import Program, build_program
 
@@ -138,18 +138,9 @@ class Bench:
         return np.hypot(*(np.indices((n, n)) - (n - 1) / 2)) * 2 * HALF_MM / n
 
 
-class SmallIris:
+def small_iris(spec: ClipSpec) -> Iris:
     """A clip's own iris from maps of at most IRIS_PX a side: a quick bake."""
-
-    def __init__(self, spec: ClipSpec) -> None:
-        self.spec = spec
-        self.mean_albedo = self.maps(1).albedo[0, 0]
-        self.mean_thickness_mm = self.maps(1).thickness_mm[0, 0]
-        self.tissue = iris_module.scattering(spec.iris_colour)
-
-    def maps(self, size_px: int) -> IrisMaps:
-        size = min(size_px, IRIS_PX)
-        return iris_module.iris_maps(self.spec.iris_seed, self.spec.iris_colour, size_px=size)
+    return replace(iris_of(spec), base_px=IRIS_PX)
 
 
 @pytest.fixture(scope="session")
@@ -185,6 +176,7 @@ def small(
     monkeypatch.setattr(eye_maps, "micro_relief_tile", tile)
     monkeypatch.setattr(eye_maps, "sclera_maps", flat_sclera)
     monkeypatch.setattr(eye_maps.sclera, "mean_albedo", lambda *_: np.full(3, 0.6))
+    monkeypatch.setattr(eye_module, "iris_of", small_iris)
     monkeypatch.setattr(eye_module, "CHAMBER_PX", 16)
     monkeypatch.setattr(eye_module, "RELIEF_SHADE_PX", {"high": 256, "ultra": 256})
     monkeypatch.setattr(sunlight, "SHADE_MAP_PX", 64)
@@ -200,6 +192,5 @@ def bench(gl: moderngl.Context, small: pytest.MonkeyPatch) -> Bench:
 @pytest.fixture
 def real_bench(gl: moderngl.Context, small: pytest.MonkeyPatch) -> Bench:
     """The bench with the irises that clips show."""
-    small.setattr(iris_module, "BASE_PX", IRIS_PX)
-    small.setattr(eye_maps, "iris_of", SmallIris)
+    small.setattr(eye_maps, "iris_of", small_iris)
     return Bench(gl)
