@@ -64,7 +64,8 @@ class Acknowledged:
 class Visit:
     """One browser on the pages: where it is, what the page says, what was acknowledged.
 
-    ``pause_s`` is the mean time between two requests; 0 means none.
+    ``pause_s`` is the mean time between two requests; 0 means none. ``tries`` are those for one
+    request before the visit is given up.
     """
 
     wire: Wire
@@ -72,6 +73,7 @@ class Visit:
     note: Note = lambda _kind, _seconds, _status: None
     mischief: Mischief = field(default_factory=Peace)
     pause_s: float = 0.0
+    tries: int = MAX_TRIES
     stored: Acknowledged = field(default_factory=Acknowledged)
     path: str = "/consent"
     page: str = ""
@@ -127,10 +129,10 @@ class Visit:
         for attempt in itertools.count():
             try:
                 answered = await self._once(kind, send)
-                if answered.status not in LATER or attempt > 200:
+                if answered.status not in LATER or attempt > self.tries:
                     return answered
             except OSError:
-                if attempt > 200:
+                if attempt > self.tries:
                     raise
             await asyncio.sleep(RETRY_S[min(attempt, len(RETRY_S) - 1)])
         raise AssertionError("unreachable")

@@ -12,8 +12,8 @@ from study.data import consents, events, progress
 from study.design.questions import AnswerError, Question
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import answers_in, first, question_rows
-from study.site.frame import shared
 from study.site.place import Here
+from study.site.way import on_the_way
 
 router = APIRouter(default_response_class=HTMLResponse)
 DRAFTED: Final = "drafted"
@@ -45,7 +45,7 @@ def _about_page(
     here: Here, visitor: Visitor, answers: dict[str, object], error: AnswerError | None = None
 ) -> Response:
     definition = visitor.study.definition
-    frame = shared(visitor.study, visitor, "about")
+    frame = on_the_way(here, visitor, "about")
     return here.page(
         "participant/about.html",
         status=422 if error else 200,
@@ -77,7 +77,7 @@ def instructions(here: Here, visitor: AVisitor) -> Response:
     step_of(here, visitor, "instructions")
     return here.page(
         "participant/instructions.html",
-        **shared(visitor.study, visitor, "instructions"),
+        **on_the_way(here, visitor, "instructions"),
         instructions=visitor.study.definition.instructions,
     )
 

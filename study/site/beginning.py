@@ -40,6 +40,11 @@ def clips_of(definition: StudyDefinition) -> int:
     return len(definition.practice) + definition.trial_count
 
 
+def _allows_phones(definition: StudyDefinition) -> bool:
+    check = definition.device_check
+    return check is not None and check.allow_phones
+
+
 @router.get("/")
 def landing(
     request: Request, here: Here, visitor: MaybeVisitor, arrival: Arrived, wishes: Wishes
@@ -56,6 +61,7 @@ def landing(
         is_under_way=staying is not None and not staying.is_over,
         is_over=staying is not None and staying.is_over,
         is_let_in=is_let_in(study, arrival),
+        allows_phones=_allows_phones(study.definition),
         clip_count=clips_of(study.definition),
         minutes=minutes_of(study.definition),
     )

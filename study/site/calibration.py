@@ -20,8 +20,8 @@ from study.design.calibration import (
 )
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import first
-from study.site.frame import shared
 from study.site.place import Here
+from study.site.way import on_the_way
 
 router = APIRouter(default_response_class=HTMLResponse)
 STEP: Final = "calibration"
@@ -43,7 +43,7 @@ def _page(here: Here, visitor: Visitor, *, fault: str = "") -> Response:
     return here.page(
         "participant/calibration.html",
         status=422 if fault else 200,
-        **shared(visitor.study, visitor, STEP),
+        **on_the_way(here, visitor, STEP),
         wanted=wanted,
         card_mm=(viewing.CARD_WIDTH_MM, viewing.CARD_HEIGHT_MM),
         blind_spot_deg=viewing.BLIND_SPOT_DEG,

@@ -20,9 +20,9 @@ from study.design.device_check import DeviceCheck, DeviceReport, findings
 from study.design.device_facts import device_facts
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import first
-from study.site.frame import shared
 from study.site.media import clip_url
 from study.site.place import Here
+from study.site.way import on_the_way
 
 router = APIRouter()
 STEP: Final = "device_check"
@@ -49,7 +49,7 @@ def _page(
     fault: str = "",
 ) -> Response:
     definition, seed = visitor.study.definition, visitor.participant.seed
-    frame = shared(visitor.study, visitor, STEP)
+    frame = on_the_way(here, visitor, STEP)
 
     def named(item: str, part: str, **values: object) -> object:
         return frame["text"](f"device_check.{item}.{part}", **values)

@@ -16,8 +16,8 @@ from study.design.eyesight import LEAST_GAP_PX, NEEDED, Eyesight, EyesightReport
 from study.design.plates import Plate, plate_svg, plates
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import first
-from study.site.frame import shared
 from study.site.place import Here
+from study.site.way import on_the_way
 
 router = APIRouter(default_response_class=HTMLResponse)
 STEP: Final = "eyesight"
@@ -31,7 +31,7 @@ def show(here: Here, visitor: AVisitor) -> Response:
 
 
 def _page(here: Here, visitor: Visitor, *, fault: str = "") -> Response:
-    frame = shared(visitor.study, visitor, STEP)
+    frame = on_the_way(here, visitor, STEP)
     if not _has_agreed(here, visitor):
         return here.page(
             "participant/eyesight_consent.html", status=422 if fault else 200, **frame, fault=fault

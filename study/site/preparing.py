@@ -13,10 +13,10 @@ from study.data.participants import Participant
 from study.data.readiness import Readiness, readiness
 from study.site.access import AVisitor, Visitor, VisitorsForm, redirect, step_of, to_current
 from study.site.forms import first
-from study.site.frame import shared
 from study.site.language import language_of
 from study.site.media import to_preload
 from study.site.place import Here
+from study.site.way import on_the_way
 from study.texts import catalogue
 
 router = APIRouter()
@@ -30,7 +30,7 @@ def preparing(here: Here, visitor: AVisitor) -> Response:
     step_of(here, visitor, "preparing")
     return here.page(
         "participant/preparing.html",
-        **shared(visitor.study, visitor, "preparing"),
+        **on_the_way(here, visitor, "preparing"),
         smallest=min(visitor.study.definition.sizes, key=lambda size: size.width),
         has_practice=bool(visitor.study.definition.practice),
     )
@@ -90,22 +90,18 @@ def begin(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
     """Begin the trials with the clips that were loaded."""
     facts = {name: _number(first(fields, name)) for name in _FACTS}
     screen = (int(facts["screen_width_px"]), int(facts["screen_height_px"]))
-    leased = arms.assign(here.db, visitor.participant, screen=screen if all(screen) else None)
-    if leased is None:
-        return redirect("/preparing")
-    progress.begin(here.db, visitor.participant, key="begin", payload=facts)
     ratio = facts["pixel_ratio"] or 1.0
-    participants.seen(
-        here.db,
-        visitor.participant,
-        device={
-            "screen_width": round(screen[0] / ratio),
-            "screen_height": round(screen[1] / ratio),
-            "pixel_ratio": ratio,
-        }
-        if all(screen)
-        else None,
-    )
+    device = {
+        "screen_width": round(screen[0] / ratio),
+        "screen_height": round(screen[1] / ratio),
+        "pixel_ratio": ratio,
+    }
+    with here.db.writing():  # one wait for the disk, and all of it or nothing
+        size = screen if all(screen) else None
+        if arms.assign(here.db, visitor.participant, screen=size) is None:
+            return redirect("/preparing")
+        progress.begin(here.db, visitor.participant, key="begin", payload=facts)
+        participants.seen(here.db, visitor.participant, device=device if size else None)
     return to_current(here, visitor)
 
 

@@ -80,6 +80,8 @@ async def live_through(
             rng,
             definition=study.definition,
             mischief=Trouble(proxy, killer, rng, share, seen),
+            # Where it takes long to start, the server is hardly ever there: PATIENCE_S ends that.
+            tries=10_000,
         )
         return await person.walk()
 

@@ -243,9 +243,11 @@ def test_a_phone_is_told_to_come_back_at_a_computer(
     cookies: Any = page.context.cookies()
     size: Any = {"width": 390, "height": 844}
     phone = chromium.new_context(viewport=size, screen=size, is_mobile=True, has_touch=True)
-    phone.add_cookies(cookies)
     page.close()
     small = phone.new_page()
+    small.goto(site.url)
+    expect(small.locator(".when-phone")).to_be_visible()
+    phone.add_cookies(cookies)
     small.goto(f"{site.url}/device-check")
     expect(small.locator("[data-item=device]")).to_have_attribute("data-verdict", "bad")
     expect(small.locator("[data-item=device] [data-remedy]")).to_be_visible()
