@@ -42,11 +42,11 @@ _DASHES: Final[tuple[Any, ...]] = ("-", (0, (5, 1.5)), (0, (3, 1.2, 1, 1.2)), (0
 
 
 def by_model_table(material: Material) -> pd.DataFrame:
-    """Return the latent place and the shares of the ratings per ranked LoD and distance.
+    """Return the latent place and the share of each rating per ranked LoD and distance.
 
     Columns: distance, lod, lod_rank, latent with interval, slope with interval (latent per level of
-    the LoD, least squares over the distance's LoDs), share_1 ... (by the model, population's mean)
-    with intervals, given_1 ... (what was given).
+    the LoD, least squares over the distance's LoDs), rating, predicted with interval (its share by
+    the model, the population's mean), share (what was given), ratings (of how many).
     """
     realism = material.inference.realism
     ranks = lod_ranks(material.tables.ratings)
@@ -69,10 +69,9 @@ def by_model_table(material: Material) -> pd.DataFrame:
         row |= dict(zip(("slope", "slope_low", "slope_high"), slopes[distance], strict=True))
         own = counted[distance, lod]
         for k in range(shares.shape[1]):
-            row |= {f"share_{low + k}": shares[i, k], f"share_{low + k}_low": ends[1][0, i, k]}
-            row |= {f"share_{low + k}_high": ends[1][1, i, k]}
-            row |= {f"given_{low + k}": own[str(low + k)] / own["total"]}
-        rows.append(row | {"ratings": own["total"]})
+            told = {"rating": low + k, "predicted": shares[i, k], "predicted_low": ends[1][0, i, k]}
+            told |= {"predicted_high": ends[1][1, i, k], "share": own[str(low + k)] / own["total"]}
+            rows.append(row | told | {"ratings": own["total"]})
     return pd.DataFrame(rows)
 
 
@@ -126,6 +125,7 @@ def _draw_latent(
     beside.set_axis_off()
     tidy(axes)
     distances = list(dict.fromkeys(table["distance"]))
+    table = table[table["rating"] == table["rating"].min()]  # places stand beside each rating
     place = {lod: float(i) for i, lod in enumerate(lods)}
     aside = np.linspace(-0.12, 0.12, len(distances)) if len(distances) > 1 else np.zeros(1)
     for k, distance in enumerate(distances):
@@ -177,10 +177,14 @@ def _draw_shares(
     for axes, distance in zip(panels, distances, strict=False):
         tidy(axes, grid="")
         own = table[table["distance"] == distance]
-        x = np.array([lods.index(lod) for lod in own["lod"]], dtype=float)
-        bottom = np.zeros(len(own))
+        model, given = (
+            own.pivot(index="lod", columns="rating", values=name).loc[own["lod"].unique()]
+            for name in ("predicted", "share")
+        )
+        x = np.array([lods.index(lod) for lod in model.index], dtype=float)
+        bottom = np.zeros(len(model))
         for step, colour in zip(steps, colours, strict=True):
-            share = own[f"share_{step}"].to_numpy(dtype=float)
+            share = model[step].to_numpy(dtype=float)
             axes.bar(x, share, bottom=bottom, width=0.78, color=colour, edgecolor="white",
                      linewidth=0.6)  # fmt: skip
             for at, under, part_of in zip(x, bottom, share, strict=True):
@@ -188,9 +192,9 @@ def _draw_shares(
                     axes.text(at, under + part_of / 2, f"{100 * part_of:.0f}", ha="center",
                               va="center", fontsize=6.5, color=readable_on(colour))  # fmt: skip
             bottom += share
-        given = own[[f"given_{step}" for step in steps[:-1]]].to_numpy(dtype=float).cumsum(axis=1)
-        start = np.repeat(x + 0.17, given.shape[1])
-        axes.hlines(given.ravel(), start, start + 0.26, color=INK, linewidth=1.1, zorder=3)
+        told = given[list(steps[:-1])].to_numpy(dtype=float).cumsum(axis=1)
+        start = np.repeat(x + 0.17, told.shape[1])
+        axes.hlines(told.ravel(), start, start + 0.26, color=INK, linewidth=1.1, zorder=3)
         _finish(axes, distance, material, lods=lods)
     for axes in panels[len(distances) :]:
         axes.set_visible(False)

@@ -164,7 +164,7 @@ CAPTIONS: Final = {
         "the same, the expected taken away. On the line the model of ratings fits; orange "
         "diamonds lie outside the grey band, of which one in twenty may."
     ),
-    "ends-of-the-scale": (
+    "predicted-shares": (
         "How often the lowest and the highest rating were given (symbols), and in which range "
         "they would lie in 95 % of studies like this one drawn from the model (bars). Above: per "
         "LoD and distance, n counts ratings. Below: every person, in the order of their share. "

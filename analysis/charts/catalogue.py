@@ -142,7 +142,7 @@ CHARTS: Final = (
           spread.spread_table),
     Chart("model-residuals", "people", residuals.RESIDUALS, residuals.residual_chart,
           residuals.residual_quantiles),
-    Chart("ends-of-the-scale", "people", ends.ENDS, ends.ends_chart, ends.ends_table),
+    Chart("predicted-shares", "people", ends.ENDS, ends.ends_chart, ends.ends_table),
 )  # fmt: skip
 
 

@@ -72,7 +72,7 @@ class Material:
         realism = self.inference.realism
         if self.predicted is not None or realism is None:
             return pd.DataFrame() if self.predicted is None else self.predicted
-        return predicted_shares(realism, rng_of("ends"))
+        return predicted_shares(realism, rng_of("predicted"))
 
     @cached_property
     def left_out(self) -> pd.DataFrame:

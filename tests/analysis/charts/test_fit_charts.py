@@ -45,7 +45,7 @@ def test_of_many_residuals_the_ends_are_all_kept(material: Material) -> None:
 def test_given_shares_lie_beside_the_models_ranges(
     material: Material, drawn_small: dict[str, Figure], texts_of: Texts
 ) -> None:
-    table, figure = ends_table(material), drawn_small["ends-of-the-scale"]
+    table, figure = ends_table(material), drawn_small["predicted-shares"]
     fives = table[(table["of"] == "cell") & (table["end"] == "highest")]
     points = {
         (float(line.get_xdata()[0]), line.get_color())
