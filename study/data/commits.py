@@ -21,6 +21,8 @@ from sqlalchemy.orm import Session
 
 LARGEST: Final = 100
 """Writers in one group: who came first must not wait for ever while others keep coming."""
+BETWEEN: Final = 4
+"""Writers who may come before one who writes for many: else they would wait as long as many do."""
 
 
 @dataclass
@@ -38,16 +40,18 @@ class GroupCommit:
 
     def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._turn = threading.Lock()
-        self._count = threading.Lock()
-        self._waiting = 0
+        self._lock = threading.Lock()
+        self._turns = {first: threading.Condition(self._lock) for first in (True, False)}
+        self._lined_up = {True: 0, False: 0}
+        self._is_taken = False
+        self._between = 0
         self._group: _Group | None = None
 
     @property
     def waiting(self) -> int:
         """How many wait for their turn."""
-        with self._count:
-            return self._waiting
+        with self._lock:
+            return sum(self._lined_up.values())
 
     @contextmanager
     def writing(self) -> Iterator[Session]:
@@ -56,34 +60,49 @@ class GroupCommit:
             yield session
 
     @contextmanager
-    def connection(self) -> Iterator[Connection]:
+    def connection(self, *, comes_first: bool = False) -> Iterator[Connection]:
         """Give the group's connection; whoever fails takes back what they wrote by themselves.
 
-        What was written is on the disk when the block has ended.
+        What was written is on the disk when the block has ended. ``comes_first`` is for one who
+        writes for many: next in line, and with nobody after them before the disk.
         """
-        self._take_turn()
+        self._take_turn(comes_first)
         try:
             group = self._join()
             try:
                 yield group.connection
                 group.size += 1
             finally:
-                if self._nobody_follows(group):
+                if comes_first or self._nobody_follows(group):
                     self._end(group)
         finally:
-            self._turn.release()
+            self._give_turn()
         group.ended.wait()
         if group.error is not None:
             raise _lost(group.error) from group.error
 
-    def _take_turn(self) -> None:
-        with self._count:
-            self._waiting += 1
-        try:
-            self._turn.acquire()
-        finally:
-            with self._count:
-                self._waiting -= 1
+    def _take_turn(self, comes_first: bool) -> None:
+        with self._lock:
+            self._lined_up[comes_first] += 1
+            try:
+                self._turns[comes_first].wait_for(
+                    lambda: not self._is_taken and self._is_next(comes_first)
+                )
+                self._is_taken = True
+                self._between = 0 if comes_first else self._between + 1
+            finally:
+                self._lined_up[comes_first] -= 1
+
+    def _is_next(self, comes_first: bool) -> bool:
+        """Say whose turn it is: nobody waits for more than BETWEEN others and one who is first."""
+        if not self._lined_up[not comes_first]:
+            return True
+        return comes_first == (self._between >= BETWEEN)
+
+    def _give_turn(self) -> None:
+        with self._lock:
+            self._is_taken = False
+            self._turns[self._lined_up[True] > 0 and self._is_next(True)].notify()
 
     def _join(self) -> _Group:
         if self._group is None:
@@ -97,8 +116,7 @@ class GroupCommit:
         return self._group
 
     def _nobody_follows(self, group: _Group) -> bool:
-        with self._count:
-            return self._waiting == 0 or group.size >= LARGEST
+        return self.waiting == 0 or group.size >= LARGEST
 
     def _end(self, group: _Group) -> None:
         """Commit for all in the group; an error is everybody's."""

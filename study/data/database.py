@@ -80,7 +80,11 @@ class Database:
 
         It joins no other transaction. What was written is on the disk when the block has ended.
         """
-        with self.group.connection() if self.group else self.engine.begin() as connection:
+        with (
+            self.group.connection(comes_first=True)
+            if self.group
+            else self.engine.begin() as connection
+        ):
             yield connection
 
     def run(self, make: Make[T]) -> T:

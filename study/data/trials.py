@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import Row, bindparam, select
+from sqlalchemy import Row, bindparam, insert, select
 from sqlalchemy.orm import Session
 
 from study.data.database import Database
@@ -166,18 +166,19 @@ def lay_out(session: Session, row: ParticipantRow, definition: StudyDefinition) 
     if has_trials is not None or row.size is None or row.orbit_direction is None:
         return
     files = definition.file_names(read_size(row.size), row.orbit_direction)
-    session.add_all(
-        TrialRow(
-            participant_id=row.id,
-            position=trial.position,
-            number=trial.number,
-            is_practice=trial.is_practice,
-            clip=trial.clip.id,
-            clip_id=files[trial.clip.id],
-        )
+    laid_out = [
+        {
+            "participant_id": row.id,
+            "position": trial.position,
+            "number": trial.number,
+            "is_practice": trial.is_practice,
+            "clip": trial.clip.id,
+            "clip_id": files[trial.clip.id],
+        }
         for trial in schedule(definition, row.seed, block=row.block, order_row=row.order_row)
-    )
+    ]
     session.flush()
+    session.execute(insert(_T), laid_out)
 
 
 def clip_ids(db: Database, participant: Participant) -> tuple[str, ...]:
