@@ -44,7 +44,7 @@ Predict = Callable[[Preference, Cell, Cell], Shares | None]
 
 
 def clip_comparisons(material: Material) -> pd.DataFrame:
-    """Return the shares per clip, with what the preference scale expects (``expected``)."""
+    """Return the shares per clip, with what the preference scale expects (``predicted``)."""
     shares = comparison_shares(clips_or_pairings(material.tables.comparisons))
     return _with_expected(shares, material, choice_shares, sides=_SEEN, answers=OUTCOMES)
 
@@ -110,7 +110,7 @@ def _with_expected(
 ) -> pd.DataFrame:
     preference = material.inference.preference
     if preference is None or shares.empty:
-        return shares.assign(expected=np.nan)
+        return shares.assign(predicted=np.nan)
     known: dict[tuple[str, str, str], Shares | None] = {}
     expected = []
     columns = [shares[name] for name in ("distance", *sides, "answer")]
@@ -120,4 +120,4 @@ def _with_expected(
             known[key] = predict(preference, (key[0], key[1]), (key[0], key[2]))
         own = known[key]
         expected.append(np.nan if own is None else own[answers.index(answer)])
-    return shares.assign(expected=expected)
+    return shares.assign(predicted=expected)

@@ -47,7 +47,7 @@ class Look:
 
 
 def share_chart(shares: pd.DataFrame, tables: Tables, look: Look) -> Figure:
-    """Draw a bar per clip or pair; a column ``expected`` is what a model expects."""
+    """Draw a bar per clip or pair; a column ``predicted`` is what a model expects."""
     if shares.empty:
         return message_figure(look.title, look.empty, is_simulated=tables.is_simulated)
     keys = [name for name in ("distance", "clip", *look.sides) if name in shares]
@@ -128,9 +128,9 @@ def _draw_intervals(axes: Axes, y: np.ndarray, ends: np.ndarray, *, colour: str)
 
 def _draw_expected(axes: Axes, places: Sequence[float], rows: Answered, look: Look) -> bool:
     """Draw where the model expects the parts of each bar to meet; say whether there was any."""
-    if any("expected" not in own for row in rows for own in row.values()):
+    if any("predicted" not in own for row in rows for own in row.values()):
         return False
-    share = np.array([[row[answer]["expected"] for answer in look.answers[:-1]] for row in rows])
+    share = np.array([[row[answer]["predicted"] for answer in look.answers[:-1]] for row in rows])
     x, y = np.cumsum(share, axis=1), np.repeat(places, share.shape[1])
     known = np.isfinite(x.ravel())
     for colour, width in (("white", 3.0), (INK, 1.5)):

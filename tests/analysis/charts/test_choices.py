@@ -34,12 +34,12 @@ def test_strokes_stand_where_the_scale_expects_the_parts_to_meet(
     material: Material, drawn_small: dict[str, Figure]
 ) -> None:
     table = pair_comparisons(material)
-    assert table.groupby(["distance", "lesser"])["expected"].sum().to_numpy() == pytest.approx(1)
+    assert table.groupby(["distance", "lesser"])["predicted"].sum().to_numpy() == pytest.approx(1)
     # What was given and what the model makes of it: one number of shares for two of the model.
-    assert (table["share"] - table["expected"]).abs().max() < 0.25
+    assert (table["share"] - table["predicted"]).abs().max() < 0.25
     (axes,) = drawn_small["comparisons-per-pair"].axes
     strokes = [c.get_segments() for c in axes.collections if len(c.get_segments()) == 12]
-    wanted = table["expected"].to_numpy().reshape(6, 3)[:, :2].cumsum(axis=1).ravel()
+    wanted = table["predicted"].to_numpy().reshape(6, 3)[:, :2].cumsum(axis=1).ravel()
     assert any(
         np.allclose([segment[0][0] for segment in segments], wanted) for segments in strokes[-1:]
     )
@@ -48,7 +48,7 @@ def test_strokes_stand_where_the_scale_expects_the_parts_to_meet(
 def test_the_side_bias_is_named_with_what_it_rests_on(
     material: Material, drawn_small: dict[str, Figure], texts_of: Texts
 ) -> None:
-    assert set(clip_comparisons(material).columns) >= {"clip", "share", "expected"}
+    assert set(clip_comparisons(material).columns) >= {"clip", "share", "predicted"}
     for name in ("comparisons-per-pair", "comparisons-per-clip"):
         (said,) = [text for text in texts_of(drawn_small[name]) if "side bias" in text]
         assert "an eye on the right gains" in said
