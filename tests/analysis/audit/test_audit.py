@@ -61,6 +61,12 @@ def test_catch_clips_and_exchanged_eyes_lift_their_limits() -> None:
     assert not any(text.startswith(("No clip", "No pairing")) for text in audit.limits())
 
 
+def test_a_pairing_with_several_irises_is_exchanged_once() -> None:
+    both_ways = [("near", "low", "ultra"), ("near", "ultra", "low")]
+    audit = audit_design(clips(*both_ways, *both_ways, *both_ways))
+    assert audit.mirrored == (("1", "2"),)
+
+
 def test_exchanged_eyes_at_another_distance_are_no_mirror() -> None:
     audit = audit_design(clips(("near", "low", "ultra"), ("far", "ultra", "low")))
     assert audit.mirrored == ()

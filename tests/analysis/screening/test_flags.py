@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -17,6 +19,9 @@ from analysis.simulation.population import POPULATION
 from analysis.simulation.simulated import simulate_tables
 from analysis.simulation.spoilers import SPOILERS
 from analysis.tables.reading import Tables, tables_from
+
+sys.path.append(str(Path(__file__).parents[1]))
+from chance import least, most
 
 LODS = ("low", "medium", "high", "ultra")
 
@@ -45,36 +50,68 @@ def test_every_spoiler_gets_its_name() -> None:
     assert {f"S{i:03}": (kind,) for i, kind in enumerate(SPOILERS, start=1)} == found
 
 
+LONG = pytest.mark.long
+FOUR = tuple(POPULATION.iris_px)
+
+
 @pytest.mark.parametrize(
-    ("distances", "least", "seeds"),
+    ("distances", "people", "seeds"),
     [
-        (("macroscopic", "far"), 0.8, 5),
-        pytest.param(("macroscopic", "far"), 0.95, 40, marks=pytest.mark.long),
-        pytest.param(None, 1.0, 40, marks=pytest.mark.long),
+        (FOUR[::3], 30, 4),
+        pytest.param(FOUR[::3], 30, 40, marks=LONG),
+        pytest.param(FOUR, 30, 20, marks=LONG),
+        pytest.param((), 15, 40, marks=LONG),
     ],
 )
 def test_spoilers_are_named_and_clean_people_are_not_over_many_studies(
-    distances: tuple[str, ...] | None, least: float, seeds: int
+    distances: tuple[str, ...], people: int, seeds: int, thesis_clips: dict[str, Stimulus]
 ) -> None:
-    shown = clips(distances or tuple(POPULATION.iris_px))
+    """Ten clips at each distance, or the thesis's seven; one spoiler of each kind is there.
+
+    Each kind is named in nine studies of ten. Without a name it may go only where another fits:
+    an extreme user with one end of the scale alone is a straight-liner.
+    """
+    shown = clips(distances) if distances else thesis_clips
     kinds = dict(enumerate(SPOILERS))
-    hits: Counter[str] = Counter()
+    hits, flagged_all = Counter[str](), Counter[str]()
     clean = 0
     for seed in range(seeds):
-        found = flagged(seed, shown, kinds)
+        found = flagged(seed, shown, kinds, people=people)
         for i, kind in kinds.items():
-            hits[kind] += kind in found.pop(f"S{i + 1:03}", ())
+            own = found.pop(f"S{i + 1:03}", ())
+            hits[kind] += kind in own
+            flagged_all[kind] += bool(own)
         clean += len(found)
-    assert all(hits[kind] >= least * seeds for kind in SPOILERS), hits  # shufflers are the hardest
-    assert clean <= 0.01 * 25 * seeds, clean
-    print(f"named {dict(hits)} of {seeds}; clean people flagged {clean} of {25 * seeds}")
+    honest = (people - len(kinds)) * seeds
+    print(f"named {dict(hits)} of {seeds}; clean people flagged {clean} of {honest}")
+    assert min(flagged_all[kind] for kind in SPOILERS) >= least(seeds, 0.9) * seeds, flagged_all
+    assert min(hits[kind] for kind in SPOILERS) >= least(seeds, 0.85) * seeds, hits
+    assert clean <= most(honest, 0.01) * honest, clean
 
 
+@pytest.mark.parametrize("studies", [4, pytest.param(60, marks=LONG)])
 def test_few_clean_people_are_flagged_in_the_thesiss_study(
-    thesis_clips: dict[str, Stimulus],
+    thesis_clips: dict[str, Stimulus], studies: int
 ) -> None:
-    found = [flagged(seed, thesis_clips, {}, people=10) for seed in range(8)]
-    assert sum(map(len, found)) <= 2  # of 80
+    """Of ten people who saw seven clips 1.5 % at most."""
+    found = [flagged(seed, thesis_clips, {}, people=10) for seed in range(studies)]
+    assert sum(map(len, found)) <= most(10 * studies, 0.015) * 10 * studies
+
+
+@pytest.mark.parametrize(
+    ("kind", "studies"),
+    [
+        ("shuffler", 3),
+        pytest.param("shuffler", 60, marks=LONG),
+        pytest.param("inverter", 40, marks=LONG),
+    ],
+)
+def test_one_spoiler_of_ten_is_named_by_seven_clips(
+    thesis_clips: dict[str, Stimulus], kind: str, studies: int
+) -> None:
+    """Nine of ten; one whose population is known could be told in 97 of 100 (docs/power.md)."""
+    found = [flagged(s, thesis_clips, {0: kind}, people=10).get("S001", ()) for s in range(studies)]
+    assert sum(kind in own for own in found) >= least(studies, 0.88) * studies, found
 
 
 def frame(rows: list[tuple[object, ...]], *names: str) -> pd.DataFrame:

@@ -13,14 +13,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.stats import binom
 
 from analysis.decision.margins import DEFAULT
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT
 from analysis.power.replicates import answers_of
 from analysis.tables.columns import STANDARD_LODS
 
-sys.path.append(str(Path(__file__).parent))
+sys.path += [str(Path(__file__).parent), str(Path(__file__).parents[1])]
+from chance import least, most
 from repeated import (
     Intervals,
     Setting,
@@ -36,16 +36,6 @@ from repeated import (
 LONG = pytest.mark.long
 MODELS = ("loss", "excess")
 TABLES = ("JOD", "tau-b", "Somers' d", "rmcorr", "reliability alpha", "reliability ICC(2,1)")
-
-
-def least(studies: int, share: float = 0.93) -> float:
-    """Return the share of studies below which one in a thousand falls by chance."""
-    return float(binom.ppf(0.001, studies, share)) / studies
-
-
-def most(studies: int, share: float) -> float:
-    """Return the share of studies above which one in a thousand rises by chance."""
-    return float(binom.ppf(0.999, studies, share)) / studies
 
 
 def repeat(own: Setting, studies: int) -> tuple[list[Intervals], dict[str, float]]:
@@ -75,7 +65,7 @@ def test_intervals_of_losses_and_noticing_hold_the_truth(people: int, studies: i
     found, true = repeat(setting(people, "thesis"), studies)
     told = by_kind(held(found, true))
     for kind in MODELS:
-        assert told[kind][0] >= least(studies), told
+        assert told[kind][0] >= least(studies, 0.93), told
     every = {name: np.mean(own) for name, own in held(found, true).items()}
     assert min(every.values()) >= least(studies, 0.89), every  # no cell far behind the others
 
