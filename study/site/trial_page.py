@@ -52,22 +52,23 @@ def trial_page(
     note: str = "",
 ) -> Response:
     """Return the page; ``given`` was sent and not stored, and ``error`` or ``note`` says why."""
-    definition, found = shown.visitor.study.definition, shown.trial
-    text = words_of(shown.visitor.study, shown.visitor).markup
+    visitor, found = shown.visitor, shown.trial
+    definition = visitor.study.definition
+    text = words_of(visitor.study, visitor).markup
     parts = shown.here.parts.of(definition, text)
     rows = parts.rows_of(definition.questions_at(found.number, is_practice=found.is_practice))
     answers = {**found.answers, **(given or {})}
     alike, own = _alike(shown, parts), _own(shown, text)
     if rows is parts.rows and not (answers or error or note):
         mould = parts.moulds.of(
-            (*alike.values(), len(own["steps"]), shown.visitor.is_simulated),
+            (*alike.values(), len(own["steps"]), visitor.is_simulated, visitor.is_over),
             partial(_blank_page, shown, parts, alike, steps=len(own["steps"])),
         )
-        return HTMLResponse(mould.fill(_filling(own, shown.visitor)))
+        return HTMLResponse(mould.fill(_filling(own, visitor)))
     rendered = _rendered(
         shown,
         {**alike, **own},
-        shown.visitor,
+        visitor,
         rows=rows,
         blank=None,
         answers=answers,
@@ -122,7 +123,10 @@ def _own(shown: Shown, text: Say) -> dict[str, Any]:
 def _blank_page(shown: Shown, parts: Parts, alike: Mapping[str, Any], *, steps: int) -> str:
     """Render the page with places for whatever is one trial's and one visitor's own."""
     nobody = replace(shown.visitor.participant, public_id=place("name"))
-    visitor = replace(shown.visitor, participant=nobody, csrf=place("csrf"), outbox=place("outbox"))
+    # No token, so that nothing in a mould can be the personal link of whom it was made for.
+    visitor = replace(
+        shown.visitor, participant=nobody, token="", csrf=place("csrf"), outbox=place("outbox")
+    )
     own = {
         **{name: place(name) for name in ("heading", "position", "clip_url", "code", "key")},
         "steps": [place(f"step-{n}") for n in range(steps)],
