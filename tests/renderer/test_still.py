@@ -14,18 +14,19 @@ from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.exchange.exr import REC_709, read_attributes, read_exr
 from renderer.frame import FrameRenderer
+from renderer.scene import Scene
 from renderer.sources import code_version
 from renderer.still import write_frame
 
-SPEC = ClipSpec(
-    left=Detail.uniform("low"), right=Detail.uniform("high"), width=192, height=108, crowd=0
-)
+SPEC = ClipSpec(left=Detail.uniform("low"), right=Detail.uniform("high"), width=192, height=108)
 
 
 @pytest.fixture(scope="module")
-def files(gl: moderngl.Context, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def files(
+    gl: moderngl.Context, standard_scene: Scene, tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     folder = tmp_path_factory.mktemp("still")
-    renderer = FrameRenderer(gl, SPEC)
+    renderer = FrameRenderer(gl, SPEC, scene=standard_scene)
     for name in ("x.exr", "x.png"):
         write_frame(folder / name, renderer, azimuth_deg=12.0)
     return folder

@@ -25,6 +25,7 @@ from renderer.iris.pigment import linear_to_srgb
 from renderer.iris.source import iris_of
 from renderer.park.cube_maps import FACE_AXES, CubeTarget
 from renderer.park.lat_long import sh_of_lat_long
+from renderer.scene import Scene
 
 SPEC = ClipSpec(
     left=Detail.uniform("medium"),
@@ -39,8 +40,8 @@ COLOURS = [(1, 0, 0), (0, 1, 1), (0, 1, 0), (1, 0, 1), (0, 0, 1), (1, 1, 0)]
 
 
 @pytest.fixture(scope="module")
-def renderer(gl: moderngl.Context) -> FrameRenderer:
-    return FrameRenderer(gl, SPEC)
+def renderer(gl: moderngl.Context, standard_scene: Scene) -> FrameRenderer:
+    return FrameRenderer(gl, SPEC, scene=standard_scene)
 
 
 @pytest.fixture(scope="module")
