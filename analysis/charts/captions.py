@@ -71,8 +71,9 @@ CAPTIONS: Final = {
         "its uncertainty.)"
     ),
     "realism-matrix": (
-        "What was shown: mean realism of each combination of LoD and distance, with the "
-        "number of people (n) and of ratings. Nothing is known about hatched combinations."
+        "What was shown: mean realism of each combination of LoD and distance, its 95 % "
+        "t interval, and the number of people (n) and of ratings. Nothing is known about "
+        "hatched combinations."
     ),
     "rating-distribution": (
         "How often each rating was given, by distance and LoD; bars are centred on the middle"
@@ -138,8 +139,9 @@ CAPTIONS: Final = {
         "Flagged and inconsistent people weigh less in the models; nobody was excluded."
     ),
     "ratings-per-person": (
-        "What each person gave to each LoD at each distance (mean rating), severe people on "
-        "top. Flagged people stand in red."
+        "What each person gave: a row per person, severe ones on top, a column per eye as it was "
+        "shown. Of more than 40 such eyes those of one LoD at one distance are taken together "
+        "(mean rating). Flagged people stand in red."
     ),
     "verdict-stability": (
         "Every verdict with everyone, with and without flagged people, and without each single "

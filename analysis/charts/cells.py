@@ -31,7 +31,7 @@ from analysis.charts.style import (
 from analysis.descriptive import mean_ratings, rating_counts
 from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.reading import Tables
-from analysis.wording import number
+from analysis.wording import interval, number
 
 DISTRIBUTION: Final = "Distribution of the ratings"
 MATRIX: Final = "Mean realism per LoD and distance"
@@ -105,13 +105,13 @@ def realism_matrix(tables: Tables) -> Figure:
     means = mean_ratings(tables.ratings, ["distance", "lod"])
     if means.empty:
         return message_figure(MATRIX, NO_RATINGS, is_simulated=tables.is_simulated)
-    distances, lods = distance_order(tables.ratings), lod_order(tables.ratings)[::-1]
-    cells = {(row["lod"], row["distance"]): row for row in records(means)}
     counted = tables.ratings[~tables.ratings["is_practice"]]
+    distances, lods = distance_order(counted), lod_order(counted)[::-1]
+    cells = {(row["lod"], row["distance"]): row for row in records(means)}
     shown = set(zip(counted["lod"], counted["distance"], strict=True))
     figure = new_figure(
         min(PAGE_WIDTH_IN, 1.9 + 1.3 * max(3, len(distances))),
-        1.25 + 0.55 * len(lods),
+        1.25 + 0.62 * len(lods),
         MATRIX,
         is_simulated=tables.is_simulated,
     )
@@ -142,9 +142,11 @@ def _draw_cell(
         strength = (cell["mean"] - scale[0]) / (scale[1] - scale[0])
         box = {"facecolor": tuple(1 - strength * (1 - c) for c in (0.35, 0.55, 0.78))}
         people, ratings = cell["people"], cell["ratings"]
-        axes.text(x, y - 0.1, number(cell["mean"]), ha="center", va="center", color=INK,
+        axes.text(x, y - 0.24, number(cell["mean"]), ha="center", va="center", color=INK,
                   fontsize=NORMAL + 1)  # fmt: skip
-        axes.text(x, y + 0.27, f"n = {people}, {ratings} ratings", ha="center", va="center",
+        axes.text(x, y + 0.06, interval(cell["low"], cell["high"]), ha="center", va="center",
+                  color=INK, fontsize=7)  # fmt: skip
+        axes.text(x, y + 0.3, f"n = {people}, {ratings} ratings", ha="center", va="center",
                   color=INK, fontsize=6.5)  # fmt: skip
     else:
         axes.text(x, y, cell["reason"], ha="center", va="center", color=QUIET, fontsize=7,

@@ -67,7 +67,7 @@ def realism_per_clip(tables: Tables) -> Figure:
     rows = _rows_of_panels(means)
     widest = max(sum(_columns(panel) for panel in row) for row in rows)
     width = min(PAGE_WIDTH_IN, max(5.5, 0.9 + _SLOT_IN * widest))
-    is_narrow = (width - 0.9) / widest < _UPRIGHT_IN
+    is_narrow = (width - 0.9) / widest < max(_UPRIGHT_IN, upright_in(set(means["lod"])))
     figure = new_figure(
         width,
         1.0

@@ -1,8 +1,9 @@
-"""The raw ratings at a glance: a row per person, a column per LoD and distance."""
+"""The raw ratings at a glance: a row per person, a column per eye that was shown."""
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Mapping
+from typing import Any, Final
 
 import pandas as pd
 from matplotlib.colors import ListedColormap
@@ -10,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from analysis.charts.material import Material
-from analysis.charts.parts import head_columns, upright_in
+from analysis.charts.parts import clip_label, head_columns, records, upright_in
 from analysis.charts.style import (
     ALARM,
     NO_RATINGS,
@@ -27,24 +28,38 @@ from analysis.wording import people
 
 HEAT_MAP: Final = "What each person gave to what"
 _MOST_ROWS_NAMED: Final = 45
+_MOST_COLUMNS: Final = 40
+_KEYS: Final = ("distance", "lod", "clip", "eye")
 
 
 def heat_table(material: Material) -> pd.DataFrame:
-    """Return everyone's mean rating per distance and LoD: participant, distance, lod, rating."""
-    means = person_means(material.tables.ratings, ["distance", "lod"])
-    return in_order(means, material.tables.ratings)
+    """Return everyone's rating of each eye as it was shown; of many, per distance and LoD alone.
+
+    Columns: distance, lod, clip and eye (empty where taken together), participant, rating (mean of
+    repeated ones).
+    """
+    ratings = material.tables.ratings
+    counted = ratings[~ratings["is_practice"]]
+    keys = list(
+        _KEYS if len(counted[list(_KEYS)].drop_duplicates()) <= _MOST_COLUMNS else _KEYS[:2]
+    )
+    means = in_order(person_means(ratings, keys), ratings)
+    names = [*_KEYS, "participant", "rating"]
+    return means.reindex(columns=names).astype({"clip": "string", "eye": "string"})
 
 
 def ratings_heat_map(material: Material) -> Figure:
-    """Draw each person as a row and each LoD at each distance as a column, severe people on top."""
+    """Draw each person as a row and each eye shown as a column, severe people on top."""
     table = heat_table(material)
     if table.empty:
         return message_figure(HEAT_MAP, NO_RATINGS, is_simulated=material.is_simulated)
-    columns = list(dict.fromkeys(zip(table["distance"], table["lod"], strict=True)))
-    wide = table.pivot(index="participant", columns=["distance", "lod"], values="rating")[columns]
-    wide = wide.loc[wide.mean(axis=1).sort_values(kind="stable").index]
+    place = table.groupby(list(_KEYS), dropna=False, sort=False).ngroup()
+    first = records(table[~place.duplicated()])
+    wide = table.assign(place=place).pivot(index="participant", columns="place", values="rating")
+    wide = wide.loc[wide.mean(axis=1).sort_values(kind="stable").index, range(len(first))]
+    columns = [(str(row["distance"]), _name(row)) for row in first]
     is_named = len(wide) <= _MOST_ROWS_NAMED
-    names = [lod for _, lod in columns]
+    names, has_eyes = [name for _, name in columns], bool(table["clip"].notna().any())
     height = min(9.0, 1.6 + upright_in(names) + (0.17 * max(4, len(wide)) if is_named else 4.5))
     width = min(PAGE_WIDTH_IN, 2.2 + 0.42 * len(columns))
     figure = new_figure(max(width, 4.6), height, HEAT_MAP, is_simulated=material.is_simulated)
@@ -81,7 +96,15 @@ def ratings_heat_map(material: Material) -> Figure:
         ncols=len(steps) + 1,
         frameon=False,
         fontsize=SMALL,
-        title="mean rating, to the nearest",
+        title="rating" if has_eyes else "mean rating, to the nearest",
         title_fontsize=SMALL,
     )
     return figure
+
+
+def _name(row: Mapping[str, Any]) -> str:
+    """Name an eye: "clip 4, left: low", or its LoD alone where clips say no more."""
+    lod = str(row["lod"])
+    if pd.isna(row["clip"]) or pd.isna(row["eye"]):
+        return lod
+    return f"{clip_label(str(row['clip']))}, {row['eye']}: {lod}"

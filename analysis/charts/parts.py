@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -71,10 +71,15 @@ def lod_legend(
         figure.legend(
             handles=handles,
             loc="outside lower center",
-            ncols=min(8, len(handles)),
+            ncols=legend_columns(shown, figure.get_figwidth()),
             frameon=False,
             fontsize=SMALL,
         )
+
+
+def legend_columns(names: Sequence[str], width_in: float) -> int:
+    """Return how many names with their symbols stand in a row of a legend of that width."""
+    return max(1, min(len(names), int(width_in / (0.55 + upright_in(names)))))
 
 
 def apart(places: Sequence[float], *, least: float, low: float, high: float) -> list[float]:
@@ -98,7 +103,7 @@ def wrapped(name: str, width: int) -> str:
     return textwrap.fill(name, width, break_long_words=False)
 
 
-def upright_in(names: Sequence[str]) -> float:
+def upright_in(names: Iterable[str]) -> float:
     """Return about how many inches names take that stand upright below an axis."""
     return 0.065 * max((len(name) for name in names), default=0)
 

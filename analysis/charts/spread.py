@@ -26,6 +26,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.descriptive import mean_ratings
+from analysis.shares import clips_or_pairings
 from analysis.tables.ordering import lod_order
 from analysis.wording import number
 
@@ -34,9 +35,12 @@ TOO_FEW: Final = "It takes two people who rated the same eye; there are not so m
 
 
 def spread_table(material: Material) -> pd.DataFrame:
-    """Return mean and variance over people of every eye as it was shown, and the curve's ``a``."""
+    """Return mean and variance over people of every eye as it was shown, and the curve's ``a``.
+
+    Of many clips those of one pairing of LoDs are taken together.
+    """
     keys = ["distance", "clip", "eye", "lod"]
-    means = mean_ratings(material.tables.ratings, keys)
+    means = mean_ratings(clips_or_pairings(material.tables.ratings), keys)
     table = means[means["people"] > 1].assign(variance=lambda t: t["sd"] ** 2)
     table = table[[*keys, "people", "mean", "variance"]].reset_index(drop=True)
     low, high = material.tables.scale
@@ -59,10 +63,8 @@ def spread_of_ratings(material: Material) -> Figure:
     m, a = np.linspace(low, high, 101), float(table["a"].iloc[0])
     if np.isfinite(a):
         axes.plot(m, a * (m - low) * (high - m), color=QUIET, linewidth=1.2, zorder=1)
-        top = a * (high - low) ** 2 / 4
-        axes.annotate(f"a = {number(a)}", ((low + high) / 2, top), xytext=(0, 3),
-                      textcoords="offset points", ha="center", fontsize=SMALL,
-                      color=INK)  # fmt: skip
+        axes.text(0.99, 0.99, f"a = {number(a)}", transform=axes.transAxes, ha="right", va="top",
+                  fontsize=SMALL, color=INK)  # fmt: skip
     for row in records(table):
         axes.plot([row["mean"]], [row["variance"]], marker=lod_marker(row["lod"], lods),
                   color=lod_colour(row["lod"], lods), markeredgecolor=INK, markeredgewidth=0.7,
@@ -70,7 +72,7 @@ def spread_of_ratings(material: Material) -> Figure:
     least, most = int(table["people"].min()), int(table["people"].max())
     count = f"n = {most}" if least == most else f"n = {least} to {most}"
     axes.set_xlim(low - 0.1, high + 0.1)
-    axes.set_ylim(bottom=0)
+    axes.set_ylim(0, 1.12 * float(max(table["variance"].max(), a * (high - low) ** 2 / 4, 0.1)))
     axes.set_xticks(range(low, high + 1))
     axes.set_xlabel(f"mean rating of an eye in a clip ({count} each)", fontsize=SMALL)
     axes.set_ylabel("variance between people, points²", fontsize=SMALL)

@@ -117,13 +117,14 @@ def test_flagged_people_are_named_and_everybody_is_counted(
     assert f"weighs less: flagged, n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{count}" in said
 
 
-def test_the_heat_map_holds_every_persons_means(
-    material: Material, drawn_small: dict[str, Figure]
+def test_the_heat_map_holds_every_persons_ratings(
+    material: Material, drawn_small: dict[str, Figure], texts_of: Texts
 ) -> None:
     table = heat_table(material)
     (image,) = drawn_small["ratings-per-person"].axes[0].images
     shown = np.asarray(image.get_array())
-    assert shown.shape == (14, 9)
+    assert shown.shape == (14, 18)  # nine clips of two eyes
+    assert "near-ultra-low, right: low" in texts_of(drawn_small["ratings-per-person"])
     assert np.nansum(shown) == pytest.approx(table["rating"].sum())
 
 
