@@ -11,7 +11,8 @@ import pytest
 
 from study.cli import main
 from study.load.crowd import Timings
-from study.load.report import figures_of, table
+from study.load.find import largest
+from study.load.report import Figures, figures_of, table
 
 SQLITE = ("--people", "2", "--seconds", "1", "--database", "sqlite", "--no-fsync-cost")
 
@@ -53,7 +54,14 @@ def test_only_what_ends_while_we_measure_is_counted(monkeypatch: pytest.MonkeyPa
     timings.note("answer", 5, 200)
     assert timings.seconds == {"answer": [0.1, 0.3]}
     assert timings.errors == {"answer: 500": 1}
-    facts = {"database": "x", "processes": 1, "fsync": True, "people": 1, "pause_s": 0.0}
+    facts = {
+        "database": "x",
+        "processes": 1,
+        "fsync": True,
+        "people": 1,
+        "there": 1,
+        "pause_s": 0.0,
+    }
     found = figures_of(timings, lost=2, seconds=2, **facts)
     assert (found.answers_per_s, found.requests_per_s, found.errors) == (1.0, 1.0, 1)
     assert found.p50_ms == pytest.approx(200)
@@ -61,3 +69,52 @@ def test_only_what_ends_while_we_measure_is_counted(monkeypatch: pytest.MonkeyPa
     assert last == ["x", "1", "on", "1", "0", "1", "1", "200", "290", "298", "1", "2"] + [
         *("1.50", "0.25"),
     ]
+
+
+def figures(people: int, *, p95_ms: float, there: int | None = None, errors: int = 0) -> Figures:
+    return Figures(
+        database="x",
+        processes=1,
+        fsync=True,
+        people=people,
+        there=people if there is None else there,
+        pause_s=0.0,
+        seconds=1.0,
+        answers_per_s=0.0,
+        requests_per_s=0.0,
+        questionnaires_per_s=0.0,
+        p50_ms=0.0,
+        p95_ms=p95_ms,
+        p99_ms=0.0,
+        errors=errors,
+        lost=0,
+        site_ms=0.0,
+        crowd_ms=0.0,
+    )
+
+
+@pytest.mark.parametrize(("limit", "most"), [(70, 200), (1, 200), (200, 200), (37, 37), (0, 50)])
+def test_the_largest_crowd_in_time_is_found_in_few_runs(limit: int, most: int) -> None:
+    tried: list[int] = []
+
+    def measure(people: int) -> Figures:
+        tried.append(people)
+        return figures(people, p95_ms=50 if people <= limit else 500)
+
+    found = largest(measure, below_ms=100, most=most)
+    assert limit / 1.2 - 1 <= found <= limit
+    assert len(tried) <= 9
+    assert len(set(tried)) == len(tried)
+
+
+@pytest.mark.parametrize("spoilt", [{"there": 0}, {"errors": 1}])
+def test_a_crowd_that_did_not_come_or_met_an_error_was_not_carried(spoilt: dict[str, int]) -> None:
+    def measure(people: int) -> Figures:
+        return figures(people, p95_ms=1, there=spoilt.get("there"), errors=spoilt.get("errors", 0))
+
+    assert largest(measure, below_ms=100, most=8) == 0
+
+
+def test_a_time_for_find_is_longer_than_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["load", "--find", "--below", "0"]) == 1
+    assert "--below 0: a time is longer than 0 ms" in capsys.readouterr().err

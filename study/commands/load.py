@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
@@ -12,6 +13,7 @@ from study.commands.options import count
 from study.commands.places import new_file
 
 if TYPE_CHECKING:
+    from study.load.report import Figures
     from study.load.runs import Run
 
 HELP = "measure a site under many simulated people"
@@ -21,6 +23,7 @@ DESCRIPTION = (
     "one process and on PostgreSQL with several. What was acknowledged is compared with what is "
     "stored when the site has been killed at the end. Nothing of your own data is touched."
 )
+EXAMPLE = "--people 50 --database sqlite"
 DATABASES: Final = ("sqlite", "postgresql", "both")
 
 
@@ -43,33 +46,73 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--no-fsync-cost", action="store_true", help="leave out the runs without fsync"
     )
     parser.add_argument(
+        "--find",
+        action="store_true",
+        help="find how many people, up to --people, are answered in time; takes several runs",
+    )
+    parser.add_argument(
+        "--below",
+        type=float,
+        default=100.0,
+        metavar="MS",
+        help="what is in time for --find: p95 of all requests (default: 100)",
+    )
+    parser.add_argument(
         "--out", type=new_file, metavar="FILE", help="write the figures as JSON too"
     )
 
 
 def run(options: argparse.Namespace) -> int:
     """Measure and print."""
-    import asyncio
-
     from study.load.postgresql import NoServerError
     from study.load.report import machine, table
-    from study.load.runs import measure
 
     if options.pause < 0:
         raise CommandError(f"--pause {options.pause:g}: a pause lasts 0 s or longer")
-    found = []
+    if not options.below > 0:
+        raise CommandError(f"--below {options.below:g}: a time is longer than 0 ms")
+    found: list[Figures] = []
+    said: list[str] = []
     print(machine(), flush=True)
     for one in _runs(options):
-        if sys.stderr.isatty():
-            print(f"{one.database}, fsync {'on' if one.fsync else 'off'} ...", file=sys.stderr)
         try:
-            found.append(asyncio.run(measure(one)))
+            said += _find(one, found, below_ms=options.below) if options.find else []
+            found += [] if options.find else [_measured(one)]
         except NoServerError as error:
             raise CommandError(str(error)) from None
-    print(table(found))
+    print("\n".join([table(found), *said]))
     if options.out:
         options.out.write_text(json.dumps([figures.plain() for figures in found], indent=2) + "\n")
-    return 1 if any(figures.errors or figures.lost for figures in found) else 0
+    # A crowd that is too large is what --find looks for; a lost answer is never right.
+    return 1 if any(one.lost or (one.errors and not options.find) for one in found) else 0
+
+
+def _measured(one: Run) -> Figures:
+    import asyncio
+
+    from study.load.runs import measure
+
+    if sys.stderr.isatty():
+        how = f"fsync {'on' if one.fsync else 'off'}, {one.people} people"
+        print(f"{one.database}, {how} ...", file=sys.stderr)
+    return asyncio.run(measure(one))
+
+
+def _find(one: Run, found: list[Figures], *, below_ms: float) -> list[str]:
+    """Measure crowd after crowd, which join ``found``; returns what came of it in a sentence."""
+    from study.load.find import largest
+
+    def measured(people: int) -> Figures:
+        found.append(_measured(replace(one, people=people)))
+        return found[-1]
+
+    carried = largest(measured, below_ms=below_ms, most=one.people)
+    more = ", or more" if carried == one.people else ""
+    pauses = f"with pauses of {one.pause_s:g} s" if one.pause_s else "without pauses"
+    return [
+        f"{one.database} x {one.processes}: {carried} people{more} at once {pauses} "
+        f"(p95 below {below_ms:g} ms)"
+    ]
 
 
 def _runs(options: argparse.Namespace) -> list[Run]:
@@ -86,5 +129,5 @@ def _runs(options: argparse.Namespace) -> list[Run]:
             fsync=fsync,
         )
         for kind in kinds
-        for fsync in ((True,) if options.no_fsync_cost else (True, False))
+        for fsync in ((True,) if options.no_fsync_cost or options.find else (True, False))
     ]

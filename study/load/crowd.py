@@ -23,13 +23,15 @@ ANSWERS = ("answer", "questionnaire")
 class Timings:
     """How long requests took, by kind, and what went wrong, between two moments.
 
-    ``site_s`` and ``crowd_s`` are the processor seconds of both in that time.
+    ``there`` people had come to the clips when it began; ``site_s`` and ``crowd_s`` are the
+    processor seconds of both in that time.
     """
 
     seconds: dict[str, list[float]] = field(default_factory=dict)
     errors: dict[str, int] = field(default_factory=dict)
     began: float = math.inf
     ended: float = math.inf
+    there: int = 0
     site_s: float = math.nan
     crowd_s: float = math.nan
 
@@ -111,6 +113,7 @@ class Crowd:
         deadline = time.perf_counter() + self.arrival_s
         while len(self._there) < self.people and time.perf_counter() < deadline:
             await asyncio.sleep(0.05)
+        self.timings.there = len(self._there)
         self.timings.began = time.perf_counter()
         self.timings.ended = self.timings.began + self.seconds
         site_s, crowd_s = processor_s(*self.servers), time.process_time()

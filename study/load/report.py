@@ -21,13 +21,15 @@ class Figures:
     """One run: where, with how many, and what came out. Times are of all requests.
 
     ``site_ms`` and ``crowd_ms`` are processor time per request: the site's with its database's
-    server, and that of the simulated people, who share the machine.
+    server, and that of the simulated people, who share the machine. ``there`` of the ``people`` had
+    come to the clips when the measurement began.
     """
 
     database: str
     processes: int
     fsync: bool
     people: int
+    there: int
     pause_s: float
     seconds: float
     answers_per_s: float
@@ -47,7 +49,7 @@ class Figures:
             self.database,
             str(self.processes),
             "on" if self.fsync else "off",
-            str(self.people),
+            str(self.people) if self.there == self.people else f"{self.there} of {self.people}",
             f"{self.pause_s:g}",
             f"{self.answers_per_s:.0f}",
             f"{self.requests_per_s:.0f}",

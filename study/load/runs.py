@@ -90,6 +90,7 @@ async def measure(run: Run, *, report: Callable[[int], None] = lambda _done: Non
             processes=run.processes,
             fsync=run.fsync,
             people=run.people,
+            there=timings.there,
             pause_s=run.pause_s,
             seconds=run.seconds,
         )
