@@ -11,39 +11,32 @@ import argparse
 import importlib
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final, NoReturn
 
 from study.commands.errors import USER_ERRORS, is_ours, one_line
 
-COMMANDS: Final = (
-    "run",
-    "check",
-    "power",
-    "render",
-    "worker",
-    "figures",
-    "still",
-    "export-scene",
-    "inspect",
-    "bench",
-    "certify",
-    "gallery",
-    "lod-policy",
-    "iris",
-    "serve",
-    "links",
-    "erase",
-    "simulate",
-    "load",
-    "export",
-    "analyse",
-    "researcher",
-)
+GROUPS: Final[Mapping[str, tuple[str, ...]]] = {
+    "a study and its clips": ("run", "check", "power", "render", "worker", "figures"),
+    "eyes": (
+        "still",
+        "export-scene",
+        "inspect",
+        "bench",
+        "certify",
+        "gallery",
+        "lod-policy",
+        "iris",
+    ),
+    "people": ("serve", "links", "erase", "simulate", "load"),
+    "results": ("export", "analyse", "researcher"),
+}
+COMMANDS: Final = tuple(name for names in GROUPS.values() for name in names)
 EPILOG: Final = (
-    "STUDY is a built-in study (thesis, lod, approach) or the path of a study file. "
-    "Start with: ocularist run"
+    "STUDY is a built-in study (thesis, lod, ablation, approach) or the path of a study file.\n"
+    "Start with: ocularist run. What a command takes: ocularist COMMAND --help"
 )
+_WIDTH: Final = 20  # of the commands' names in the list
 
 
 class Parser(argparse.ArgumentParser):
@@ -58,16 +51,44 @@ def build_parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
     parser = Parser(
         prog="ocularist",
-        description="How much eye does a viewer need to see? Render, show, ask, analyse.",
+        usage="ocularist [-h] [--version] COMMAND ...",
         epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    for name in COMMANDS:
-        command = importlib.import_module(f"study.commands.{name.replace('-', '_')}")
-        subparser = subparsers.add_parser(name, help=command.HELP, description=command.DESCRIPTION)
-        command.add_arguments(subparser)
-        subparser.set_defaults(run=command.run)
+    parser.add_argument("--version", action=_Version, nargs=0, help="show the version and exit")
+    commands = parser.add_subparsers(
+        dest="command",
+        metavar="COMMAND",
+        prog="ocularist",
+        required=True,
+        help=argparse.SUPPRESS,
+    )
+    lines = ["How much eye does a viewer need to see? Render, show, ask, analyse."]
+    for title, names in GROUPS.items():
+        lines += ["", f"{title}:"]
+        for name in names:
+            command = importlib.import_module(f"study.commands.{name.replace('-', '_')}")
+            subparser = commands.add_parser(
+                name,
+                description=command.DESCRIPTION,
+                epilog=f"Example: ocularist {name} {command.EXAMPLE}".rstrip(),
+            )
+            command.add_arguments(subparser)
+            subparser.set_defaults(run=command.run)
+            lines.append(f"    {name:{_WIDTH - 4}}{command.HELP}")
+    parser.description = "\n".join(lines)
     return parser
+
+
+class _Version(argparse.Action):
+    """Prints the version; it is looked up only then."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object, **__: object) -> NoReturn:
+        """Print and end."""
+        from analysis.versions import own_version
+
+        print(f"ocularist {own_version()}")
+        parser.exit()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from analysis.versions import own_version
 from study.cli import COMMANDS, build_parser, main
 
 ROOT = Path(__file__).parent.parent
@@ -43,6 +45,9 @@ def test_every_command_explains_itself(
     said = capsys.readouterr().out
     assert said.startswith(f"usage: ocularist {command}")
     assert len(said.split("\n\n")[1]) > 40  # a sentence on what it does
+    example = " ".join(said.split("Example: ")[1].split())
+    _, *words = shlex.split(example)
+    assert build_parser().parse_args(words).command == command  # what it says can be typed
 
 
 def test_the_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
@@ -51,6 +56,13 @@ def test_the_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> Non
     said = capsys.readouterr().out
     for command in COMMANDS:
         assert f"\n    {command}" in said
+
+
+def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ending:
+        main(["--version"])
+    assert ending.value.code == 0
+    assert capsys.readouterr().out == f"ocularist {own_version()}\n"
 
 
 def test_an_unknown_command_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:

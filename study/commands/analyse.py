@@ -21,6 +21,7 @@ DESCRIPTION = (
     "Analyse ratings: charts as SVG and PNG, the numbers behind each as CSV, and one report that "
     "stands on its own. Any table with the columns participant, lod and rating will do."
 )
+EXAMPLE = "tables --bench bench.json --out report"
 WIDTH: Final = 96
 
 

@@ -24,6 +24,7 @@ DESCRIPTION = (
     "for pictures of 1920x1080; leave the machine alone meanwhile. What is measured and how: "
     "docs/benchmark.md."
 )
+EXAMPLE = "--quick --out bench.json"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

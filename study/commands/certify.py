@@ -19,6 +19,7 @@ DESCRIPTION = (
     "anterior chamber, and the error of the iris's layers; fails when an aim is missed. "
     'Needs a path tracer and a metric: pip install "ocularist[certify]".'
 )
+EXAMPLE = "--quick"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

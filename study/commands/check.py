@@ -21,6 +21,7 @@ DESCRIPTION = (
     "Read a study file and report every fault with its place, what was found and what is accepted. "
     "A sound file is summed up, and what its design can and cannot show is said."
 )
+EXAMPLE = "my-study.toml --people 24 48"
 WIDTH: Final = 96
 
 

@@ -12,6 +12,7 @@ DESCRIPTION = (
     "Erase everything about one participant, as if they had withdrawn themselves. Only the day and "
     "the step at which somebody withdrew stay. Tables that were exported before are not changed."
 )
+EXAMPLE = "p-4k7mz2qd"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -12,6 +12,7 @@ DESCRIPTION = (
     "Write ratings.csv, comparisons.csv, participants.csv, codebook.json and the study itself into "
     "a folder. Missing answers are empty cells. docs/tables.md explains every column."
 )
+EXAMPLE = "thesis --out tables"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -15,6 +15,7 @@ DESCRIPTION = (
     "(JSON), surroundings (EXR), an index (scene.json), and both eyes with all LoDs as glTF 2.0 "
     "(eyes.glb)."
 )
+EXAMPLE = "--iris 7:brown --format gltf --out scene"
 FORMATS: Final = ("all", "files", "gltf")
 
 

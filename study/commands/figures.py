@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 
-from study.commands.options import add_places, settings_of
+from study.commands.options import add_costs, add_places, settings_of
 
 HELP = "draw the dashboard's figures"
 DESCRIPTION = (
@@ -15,11 +15,13 @@ DESCRIPTION = (
     "a researcher has switched the results on. A worker does this by itself, at most once a "
     "minute; use this command where none runs."
 )
+EXAMPLE = "--data ocularist-data"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
     add_places(parser)
+    add_costs(parser)
     parser.add_argument("--claimed-by", metavar="NAME", help=argparse.SUPPRESS)
 
 
@@ -30,15 +32,16 @@ def run(options: argparse.Namespace) -> int:
     from study.figures import draw_claimed
     from study.worker_names import is_dead, worker_name
 
-    db = open_existing(settings_of(options))
+    settings = settings_of(options)
+    db = open_existing(settings)
     try:
         if options.claimed_by:
-            draw_claimed(db, worker=options.claimed_by)
+            draw_claimed(db, worker=options.claimed_by, bench=settings.bench_file)
             return 0
         figures.free_dead(db, is_dead)
         name, drawn = worker_name(), 0
         while figures.claim(db, worker=name) is not None:
-            drawn += draw_claimed(db, worker=name)
+            drawn += draw_claimed(db, worker=name, bench=settings.bench_file)
     finally:
         db.close()
     print(f"{drawn} sets of figures drawn" if drawn != 1 else "1 set of figures drawn")

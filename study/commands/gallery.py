@@ -20,6 +20,7 @@ DESCRIPTION = (
     "that explains them, README.md in the same folder. A strip that is there and current is not "
     "drawn again; an interrupted run goes on where it stopped."
 )
+EXAMPLE = "--only lods-near"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -20,6 +20,7 @@ DESCRIPTION = (
     "effect's level, wire frame, counters of time and triangles, and the scene from above. The "
     "options say which eyes and which light it starts with. Participants never see this."
 )
+EXAMPLE = "--left medium --right ultra"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -19,6 +19,7 @@ DESCRIPTION = (
     "iris's maps. Use the file iris.npz with ocularist still --iris FILE, or in a study file: "
     'eye.iris_file = "FILE". See docs/iris-photographs.md.'
 )
+EXAMPLE = "anna.jpg --out anna"
 LIMBUS_MM = (9.0, 14.0)  # of all human eyes
 FOCAL_MM = (10.0, 2000.0)
 DISTANCE_MM = (60.0, 5000.0)

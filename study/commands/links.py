@@ -23,6 +23,7 @@ DESCRIPTION = (
     "and brings them back to their place on any device until they have finished. The database "
     "keeps hashes only: this table is the only place where the links can be read."
 )
+EXAMPLE = "thesis --count 20 --url https://study.example.org"
 MOST: Final = 100_000
 
 

@@ -12,6 +12,7 @@ DESCRIPTION = (
     "from ultra, and write the thresholds in pixels as a LoD policy (docs/lod-by-pixels.md). Takes "
     "about ten minutes without a GPU."
 )
+EXAMPLE = "--out lod_policy.json"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

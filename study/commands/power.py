@@ -32,6 +32,7 @@ DESCRIPTION = (
     "assumed to see decides the result: try more than one --truth. docs/power.md tells how to read "
     "it."
 )
+EXAMPLE = "lod --participants 20,40"
 WIDTH: Final = 96
 PLANS: Final = 4  # ways in which people come, taken in turns by the replicates
 

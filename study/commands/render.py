@@ -29,6 +29,7 @@ DESCRIPTION = (
     "and current is not rendered again; an interrupted run goes on where it stopped. A killed "
     "process costs only its clip, which is tried again. See docs/rendering-at-scale.md."
 )
+EXAMPLE = "thesis --size 1280x720 --only 1 --workers 2"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 HELP = "make an account for the dashboard"
 DESCRIPTION = "Make accounts for the researcher's dashboard."
+EXAMPLE = "add ada"
 ALPHABET: Final = "23456789abcdefghjkmnpqrstvwxyz"  # nothing that reads like something else
 FIRST_NAME: Final = "researcher"
 

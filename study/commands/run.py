@@ -21,6 +21,7 @@ DESCRIPTION = (
     "Start the site and the renderer as two processes, print the addresses, and show how far the "
     "clips are. Ctrl-C stops both; everything that was answered or rendered stays."
 )
+EXAMPLE = "my-study.toml --port 8080"
 TICK_S: Final = 0.5
 NICENESS: Final = 10  # pages come first when the processor is busy drawing
 

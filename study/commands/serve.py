@@ -22,6 +22,7 @@ DESCRIPTION = (
     "Run the participants' and the researchers' pages. Clips are rendered elsewhere: by ocularist "
     "worker on the same database and clips' folder, or beforehand by ocularist render."
 )
+EXAMPLE = "thesis --host 0.0.0.0 --tls-cert cert.pem --tls-key key.pem"
 GRACE_S: Final = 5  # for answers on their way when the site is told to stop
 STUDY_ID: Final = "OCULARIST_STUDY_ID"
 """Tells the site's processes which study newcomers take part in."""

@@ -26,6 +26,7 @@ DESCRIPTION = (
     "thesis says that people did, with noise; their answers try out a study and its analysis and "
     "say nothing about eyes. Simulated data is labelled so wherever it appears."
 )
+EXAMPLE = "thesis --participants 30 --data trial"
 SITE_UP_S: Final = 60.0
 
 

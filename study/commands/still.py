@@ -22,6 +22,7 @@ DESCRIPTION = (
     "Every effect can be set on its own (--effect reflection=low, --effect left.caustics=off) or "
     "shown alone (--only-effect caustics). A file named .exr gets linear radiance."
 )
+EXAMPLE = "--distance near --left low --right ultra --out near.png"
 KINDS: Final = (".png", ".exr")
 VIEWS: Final = ("face", "crowd")
 GROUP: Final = 30  # people in the crowd's view unless --crowd says otherwise

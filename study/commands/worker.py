@@ -23,6 +23,7 @@ DESCRIPTION = (
     "rendered twice, and one that is killed loses only its clip. Beside that it draws the "
     "dashboard's figures where answers have come."
 )
+EXAMPLE = "--database postgresql+psycopg://host/study --media /srv/clips"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
