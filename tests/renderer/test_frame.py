@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import moderngl
@@ -12,12 +14,12 @@ import numpy as np
 import pytest
 
 from renderer.clip import ClipSpec
+from renderer.context import identify
 from renderer.detail import EFFECTS, TABLE, Detail
 from renderer.encoding.fidelity import eye_rectangles
 from renderer.frame import Frame, FrameRenderer
 from renderer.production.batch import render_clip
 from renderer.scene import Scene
-from renderer.studio import Studio
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
 SPEC = ClipSpec(left=LOW, right=ULTRA, width=320, height=180, duration_s=0.1, orbit_deg=60)
@@ -32,24 +34,45 @@ def render(gl: moderngl.Context, scene: Scene, spec: ClipSpec, azimuth_deg: floa
     return FrameRenderer(gl, spec, scene=scene).render(azimuth_deg, time_s=0.5)
 
 
-def test_another_process_renders_the_same_clip_bit_for_bit(tmp_path: Path) -> None:
+@dataclass
+class Shared:
+    """A source of frames in the scene that all tests share."""
+
+    gl: moderngl.Context
+    scene: Scene
+
+    @property
+    def gl_renderer(self) -> str:
+        return identify(self.gl).renderer
+
+    @property
+    def gl_version(self) -> str:
+        return identify(self.gl).version
+
+    def frames(self, spec: ClipSpec, numbers: Sequence[int] | None = None) -> Iterator[Frame]:
+        renderer = FrameRenderer(self.gl, spec, scene=self.scene)
+        for number in range(spec.frame_count) if numbers is None else numbers:
+            yield renderer.render_number(number)
+
+
+def test_another_process_renders_the_same_clip_bit_for_bit(
+    gl: moderngl.Context, scene: Scene, tmp_path: Path
+) -> None:
     code = (
         "import sys; from pathlib import Path; from renderer.production.batch import render_clip;"
         "from renderer.clip import ClipSpec; from renderer.studio import Studio; import json;"
         "spec = ClipSpec.from_dict(json.loads(sys.argv[2]));"
-        "print(render_clip(spec, Path(sys.argv[1]), source=Studio()).raw_sha256)"
+        "print(render_clip(spec, Path(sys.argv[1]), source=Studio(), with_flip=False)"
+        ".raw_sha256)"
     )
-    import json
-
+    spec = replace(SPEC, width=160, height=90, cube_size="auto")  # smaller mirrors, the same code
     told = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "other"), json.dumps(SPEC.to_dict())],
+        [sys.executable, "-c", code, str(tmp_path / "other"), json.dumps(spec.to_dict())],
         capture_output=True,
         text=True,
         check=True,
     ).stdout
-    studio = Studio()
-    here = render_clip(SPEC, tmp_path / "here", source=studio)
-    studio.close()
+    here = render_clip(spec, tmp_path / "here", source=Shared(gl, scene), with_flip=False)
     assert told.strip() == here.raw_sha256
     assert min(min(row) for row in here.visible_px) > 0
 
