@@ -10,7 +10,12 @@ def number(value: float, *, digits: int = 2) -> str:
     """Write a number with a true minus sign; an en dash where there is none."""
     if value is None or not math.isfinite(value):
         return "–"
-    return f"{value:.{digits}f}".replace("-", "−")
+    return _signed(f"{value:.{digits}f}")
+
+
+def _signed(text: str) -> str:
+    """Give a number a true minus sign, and none if it is zero as written."""
+    return text.replace("-", "−" if float(text) else "")
 
 
 def interval(low: float, high: float, *, digits: int = 2) -> str:
@@ -22,7 +27,7 @@ def interval(low: float, high: float, *, digits: int = 2) -> str:
 
 def percent(share: float) -> str:
     """Write a share as a whole percentage."""
-    return f"{100 * share:.0f}\N{NO-BREAK SPACE}%" if math.isfinite(share) else "–"
+    return f"{_signed(f'{100 * share:.0f}')}\N{NO-BREAK SPACE}%" if math.isfinite(share) else "–"
 
 
 def p_value(p: float) -> str:

@@ -83,11 +83,16 @@ def shown_clips(ratings: pd.DataFrame, comparisons: pd.DataFrame) -> list[ShownC
 
 
 def _mirrored(clips: Sequence[ShownClip]) -> tuple[tuple[str, str], ...]:
-    return tuple(
-        (a.clip, b.clip)
-        for i, a in enumerate(clips)
-        for b in clips[i + 1 :]
-        if not a.is_catch
-        and a.distance == b.distance
-        and (a.left_lod, a.right_lod) == (b.right_lod, b.left_lod)
-    )
+    """Return the pairings shown both ways round, each by the first clip that shows it so.
+
+    The same pairing with another iris is not another pairing.
+    """
+    first: dict[tuple[str, str, str], str] = {}
+    for clip in clips:
+        first.setdefault((clip.distance, clip.left_lod, clip.right_lod), clip.clip)
+    found: list[tuple[str, str]] = []
+    for place, (distance, left, right) in enumerate(first):
+        other = (distance, right, left)
+        if left != right and other in list(first)[place + 1 :]:
+            found.append((first[distance, left, right], first[other]))
+    return tuple(found)
