@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from analysis.audit import Audit, ShownClip, audit_design
     from analysis.charts import CHARTS, Chart, figure_bytes, figures
+    from analysis.costs.cost import read_bench
     from analysis.decision.margins import Margins, declared_margins
     from analysis.report.publish import Summary, analyse
     from analysis.simulation.observers import Answer, Observer, Stimulus, draw_observer
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "audit": ("Audit", "ShownClip", "audit_design"),
     "charts": ("CHARTS", "Chart", "figure_bytes", "figures"),
+    "costs.cost": ("read_bench",),
     "tables.column": ("Column",),
     "decision.margins": ("Margins", "declared_margins"),
     "simulation.observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
@@ -58,6 +60,7 @@ __all__ = [
     "draw_observer",
     "figure_bytes",
     "figures",
+    "read_bench",
     "read_source",
     "tables_from",
 ]

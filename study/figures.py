@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from analysis import CHARTS, Summary, analyse, tables_from
+from analysis import CHARTS, Summary, TableError, analyse, read_bench, tables_from
 from study.data import export, figures, studies
 from study.data.database import Database
 from study.data.figures import Claim
@@ -25,17 +25,18 @@ KEPT: Final = (".svg", ".csv", ".html")  # a picture in pixels can be had from t
 Say = Callable[[str], None]
 
 
-def draw_claimed(db: Database, *, worker: str) -> bool:
+def draw_claimed(db: Database, *, worker: str, bench: Path | None = None) -> bool:
     """Draw the set that ``worker`` has claimed and store it; False where the claim was lost.
 
-    What goes wrong is stored for the dashboard before it is raised.
+    ``bench`` is where the LoDs' costs stand, if that file is there. What goes wrong is stored for
+    the dashboard before it is raised.
     """
     own = figures.claimed(db, worker=worker)
     if own is None:
         return False
     try:
         with _kept_alive(db, own, worker):
-            summary, files = draw(db, studies.by_id(db, own.study_id), own.kind)
+            summary, files = draw(db, studies.by_id(db, own.study_id), own.kind, bench=bench)
     except Exception as error:
         reason = "".join(traceback.format_exception(error))
         figures.fail(db, own, worker=worker, error=reason)
@@ -43,8 +44,13 @@ def draw_claimed(db: Database, *, worker: str) -> bool:
     return figures.store(db, own, worker=worker, summary=summary, files=files)
 
 
-def draw(db: Database, study: Study, kind: str) -> tuple[dict[str, Any], dict[str, bytes]]:
-    """Analyse one kind of a study's answers; return the summary and the files by name."""
+def draw(
+    db: Database, study: Study, kind: str, *, bench: Path | None = None
+) -> tuple[dict[str, Any], dict[str, bytes]]:
+    """Analyse one kind of a study's answers; return the summary and the files by name.
+
+    With ``bench`` they tell what the LoDs cost; a faulty file is told and costs are left out.
+    """
     stored = export.tables(db, study)
     frames = {
         name: table[table["simulated"].fillna(False) == (kind == SIMULATED)]
@@ -56,9 +62,24 @@ def draw(db: Database, study: Study, kind: str) -> tuple[dict[str, Any], dict[st
     }
     tables = tables_from(frames, source=study.title, codebook=stored.codebook)
     with tempfile.TemporaryDirectory(prefix="ocularist-figures-") as folder:
-        found = analyse(tables, folder)
+        costs, faults = _costs(bench)
+        found = analyse(tables, folder, bench=costs)
         files = {path.name: path.read_bytes() for path in _files(found) if path.suffix in KEPT}
-    return _summary(found), files
+    summary = _summary(found)
+    summary["limits"] += faults
+    return summary, files
+
+
+def _costs(bench: Path | None) -> tuple[Path | None, list[str]]:
+    """Return the file of costs if it is there and can be read, and what is wrong with it."""
+    if bench is None or not bench.is_file():
+        return None, []
+    try:
+        read_bench(bench)
+    except TableError as error:
+        fault = "; ".join(str(error).splitlines())
+        return None, [f"What the LoDs cost is left out, for {bench.name} cannot be used: {fault}."]
+    return bench, []
 
 
 def _files(found: Summary) -> Iterator[Path]:

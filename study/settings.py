@@ -29,6 +29,7 @@ class Settings:
     data_folder: Path = DATA_FOLDER
     database_url: str = f"sqlite:///{DATA_FOLDER}/study.sqlite3"
     media_folder: Path = DATA_FOLDER / "clips"
+    bench_file: Path = DATA_FOLDER / "bench.json"
     host: str = DEFAULT_HOST
     port: int = DEFAULT_PORT
     tls_cert: Path | None = None
@@ -55,6 +56,7 @@ def read_settings(
     data_folder: Path | None = None,
     database: str | None = None,
     media: Path | None = None,
+    bench: Path | None = None,
     host: str | None = None,
     port: int | None = None,
     tls_cert: Path | None = None,
@@ -62,11 +64,12 @@ def read_settings(
 ) -> Settings:
     """Combine arguments, environment and defaults; an argument wins over the environment.
 
-    The environment's names are OCULARIST_DATA, OCULARIST_DATABASE, OCULARIST_MEDIA, OCULARIST_HOST
-    and OCULARIST_PORT. Raises SettingsError for a value that cannot be used.
+    The environment's names are OCULARIST_DATA, OCULARIST_DATABASE, OCULARIST_MEDIA,
+    OCULARIST_BENCH, OCULARIST_HOST and OCULARIST_PORT. Raises SettingsError for a value that cannot
+    be used.
     """
     folder = data_folder or Path(environ.get("OCULARIST_DATA") or DATA_FOLDER)
-    media_text = environ.get("OCULARIST_MEDIA")
+    media_text, bench_text = environ.get("OCULARIST_MEDIA"), environ.get("OCULARIST_BENCH")
     if (tls_cert is None) != (tls_key is None):
         raise SettingsError("TLS needs both --tls-cert and --tls-key")
     return Settings(
@@ -75,6 +78,7 @@ def read_settings(
         or environ.get("OCULARIST_DATABASE")
         or f"sqlite:///{folder}/study.sqlite3",
         media_folder=media or (Path(media_text) if media_text else folder / "clips"),
+        bench_file=bench or (Path(bench_text) if bench_text else folder / "bench.json"),
         host=host or environ.get("OCULARIST_HOST") or DEFAULT_HOST,
         port=port or _port(environ.get("OCULARIST_PORT")),
         tls_cert=tls_cert,

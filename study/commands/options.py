@@ -55,6 +55,17 @@ def add_places(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_costs(parser: argparse.ArgumentParser) -> None:
+    """Add --bench: where the costs of the LoDs stand that the dashboard's figures show."""
+    parser.add_argument(
+        "--bench",
+        type=Path,
+        metavar="FILE.json",
+        help="costs measured by ocularist bench, for the dashboard's figures (default: bench.json "
+        "in the data folder, if there is one)",
+    )
+
+
 def add_listening(parser: argparse.ArgumentParser) -> None:
     """Add where the site listens, and its certificate."""
     parser.add_argument(
@@ -76,6 +87,7 @@ def settings_of(options: argparse.Namespace) -> Settings:
         data_folder=given.get("data"),
         database=given.get("database"),
         media=given.get("media"),
+        bench=given.get("bench"),
         host=given.get("host"),
         port=given.get("port"),
         tls_cert=given.get("tls_cert"),

@@ -38,7 +38,14 @@ def start_rendering(settings: Settings, *, niceness: int) -> subprocess.Popen[by
 def start_drawing(settings: Settings, claimed_by: str) -> subprocess.Popen[bytes]:
     """Start the drawing of the figures that a worker of that name has claimed, behind all else."""
     return start_command(
-        ["figures", "--claimed-by", claimed_by, *_places(settings)],
+        [
+            "figures",
+            "--claimed-by",
+            claimed_by,
+            *_places(settings),
+            "--bench",
+            str(settings.bench_file),
+        ],
         environment={**_secrets(settings), "OPENBLAS_NUM_THREADS": "1"},
         niceness=FIGURE_NICENESS,
     )

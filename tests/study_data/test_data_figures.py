@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from analysis import Tables
 from study.commands.processes import ending
 from study.commands.starting import start_drawing
 from study.data import erasure, export, figures, figures_shown, participants, researchers
@@ -19,7 +22,8 @@ from study.data.figures import Claim
 from study.data.researchers import Researcher
 from study.data.studies import Study
 from study.figure_keeper import LONGEST_S, FigureKeeper, keep_figures
-from study.settings import Settings
+from study.figures import draw as draw_figures
+from study.settings import Settings, read_settings
 from study.simulate import simulate
 
 SUMMARY = {"people": 2, "charts": []}
@@ -311,3 +315,35 @@ def test_a_database_that_is_away_for_a_moment_ends_no_figures() -> None:
     keep_figures(away, stop, poll_s=0.0)
     gone = "Figures of the dashboard: the server is gone; looking again."
     assert said == [gone, gone, "stopped"]
+
+
+def test_costs_of_the_data_folder_are_shown_and_a_faulty_file_is_told(
+    db: Database, study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given: list[Path | None] = []
+
+    def found(_tables: Tables, _folder: str, *, bench: Path | None) -> SimpleNamespace:
+        given.append(bench)
+        names = dict.fromkeys(("verdicts", "findings", "limits", "design", "quality", "files"), ())
+        return SimpleNamespace(people=0, ratings=0, **names)
+
+    monkeypatch.setattr("study.figures.analyse", found)
+    answer(db, study)
+    settings = read_settings({}, data_folder=tmp_path)
+    assert settings.bench_file == tmp_path / "bench.json"
+    elsewhere = {"OCULARIST_BENCH": "costs/bench.json"}
+    assert read_settings(elsewhere, data_folder=tmp_path).bench_file == Path("costs/bench.json")
+    told: list[list[str]] = []
+    row = {"renderer": "r", "size": "1280x720", "distance": "near", "iris_px": 160.0, "eyes": 2}
+    good = json.dumps([row | {"lod": "low", "ms_median": 2.0, "ms_mad": 0.1, "n": 20}])
+    for text in (None, good, '[{"lod": "low"'):
+        if text is not None:
+            settings.bench_file.write_text(text)
+        summary, _ = draw_figures(db, study, "simulated", bench=settings.bench_file)
+        told.append(summary["limits"])
+    assert given == [None, settings.bench_file, None]
+    assert told[:2] == [[], []]
+    (fault,) = told[2]
+    assert fault.startswith(
+        "What the LoDs cost is left out, for bench.json cannot be used: bench.json: not JSON"
+    )
