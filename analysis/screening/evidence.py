@@ -6,9 +6,9 @@ Three accounts of all answers of a person are held against each other, by what o
     did not      each is an answer to any of the trials that the person was shown
     turned       ratings and comparisons run backwards, what is noticed does not
 
-Each is a probability of the same answers, averaged over how lenient the person may be. Of people
-who looked at most one in k has answers that are k times likelier otherwise, whatever the study
-(Markov's inequality); how far below that it stays is simulated in docs/power.md.
+Each is a probability of the same answers, averaged over how lenient the person may be. Were it
+exact, at most one in k of the people who looked would have answers that are k times likelier
+otherwise, whatever the study (Markov's inequality); docs/power.md says how few do.
 """
 
 from __future__ import annotations
@@ -30,9 +30,14 @@ LEAST: Final = 0.1
 
 _FEWEST_TRIALS: Final = 5
 _FEWEST_PEOPLE: Final = 5  # fewer cannot say what others answer
-_LENIENCE_SD: Final = 0.6  # of people, beside the scatter of all answers, which is 1
-_NODES, _WEIGHTS = hermegauss(7)
+_LENIENCE_SD: Final = 1.0  # of people, beside the scatter of all answers, which is 1: wide
+_NODES, _WEIGHTS = hermegauss(9)
 _LENIENCE: Final = _LENIENCE_SD * _NODES
+_APART: Final = 0.7
+"""What a trial's answer is worth beside independent ones: all four of them come of one look.
+
+By simulation: without it four times as many people who looked are named.
+"""
 _LOG_WEIGHTS: Final = np.log(_WEIGHTS / _WEIGHTS.sum())
 
 
@@ -96,6 +101,7 @@ def _odds(
     for question, kind in enumerate(QUESTIONS):
         shares = others[kind].log_shares(person, _LENIENCE if kind == RATED else np.zeros(1))
         place, given = trials.place[own, question], trials.given[own, question]
+        shares *= _APART
         is_given, last = given != NONE, trials.categories[kind] - 1
         if not is_given.any():
             continue
@@ -103,7 +109,9 @@ def _odds(
         if kind == COMPARED:  # as the pair of the trial in the column names it
             answer = np.where(trials.is_mirrored[own], last - answer, answer)
         told = shares[:, np.maximum(place, 0), answer]
-        nowhere = np.log(others[kind].shares[person])[answer]  # the other trial did not ask
+        nowhere = (
+            _APART * np.log(others[kind].shares[person])[answer]
+        )  # the other trial did not ask
         as_shown += np.where(is_given[:, None], np.where(place != NONE, told, nowhere), 0.0)
         backwards = np.diagonal(answer if kind == NOTED else last - answer)
         turned += np.where(is_given, shares[:, np.maximum(place, 0), backwards], 0.0)

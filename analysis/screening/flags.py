@@ -20,10 +20,11 @@ INVERTER, SIDE_PICKER, FALSE_ALARMS = "inverter", "side-picker", "false alarms"
 _FEW: Final = 6  # ratings or comparisons below which a pattern of use says nothing
 _NEARLY_ALL: Final = 0.9
 _FEW_AGAINST: Final = 3
-NAMED: Final = 20.0
+NAMED: Final = 5.0
 """How many times likelier answers must be from somebody who did not look, or who turned the scale.
 
-Of people who looked at most one in 20 comes to that; on simulated people 6 to 8 in 1000 do.
+Of simulated people who looked few are named (docs/power.md), and nobody where not even the median
+person is told as clearly to have looked.
 """
 _LOG_NAMED: Final = log(NAMED)
 
@@ -54,11 +55,15 @@ def _is_side_picker(s: pd.DataFrame) -> pd.Series:
 
 def _is_inverter(s: pd.DataFrame) -> pd.Series:
     """Turned round fits, and better than answers without looking do."""
-    return s["upright"].lt(-_LOG_NAMED) & s["upright"].lt(s["looking"])
+    return _is_unlikely(s["upright"]) & s["upright"].lt(s["looking"])
 
 
 def _is_shuffler(s: pd.DataFrame) -> pd.Series:
-    return s["looking"].lt(-_LOG_NAMED)
+    return _is_unlikely(s["looking"])
+
+
+def _is_unlikely(log_odds: pd.Series) -> pd.Series:
+    return log_odds.lt(-_LOG_NAMED) & bool(log_odds.median() > _LOG_NAMED)
 
 
 def _has_false_alarms(s: pd.DataFrame) -> pd.Series:
