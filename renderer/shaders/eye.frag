@@ -21,8 +21,7 @@ out vec4 f_radiance;
 
 vec3 iris_radiance(Surface s) {
     ViewRay ray = view_through_cornea(s);
-    int is_relief = TEXTURE >= HIGH && relief_share() > 0.0 ? 1 : 0;
-    for (int i = 0; i < is_relief; ++i) ray.x_mm = on_relief(ray.x_mm, ray.d_eye);
+    if (TEXTURE >= HIGH && relief_share() > 0.0) ray.x_mm = on_relief(ray.x_mm, ray.d_eye);
     IrisTexel texel = iris_texel(ray.x_mm);
     IrisLight light = light_on_iris(ray.x_mm, s);
     vec3 reflectance = iris_reflectance(texel, ray, light);
@@ -35,10 +34,11 @@ vec3 iris_radiance(Surface s) {
 vec3 eye_radiance(Surface s) {
     s = with_waves(s);
     vec3 body = vec3(0.0);
-    // Software GL jumps over loops that no pixel of a block enters, but computes both sides of if.
-    int iris = s.cornea > 0.002 ? 1 : 0, sclera = s.cornea < 0.998 ? 1 : 0;
-    for (int i = 0; i < iris; ++i) body += s.cornea * iris_radiance(s);
-    for (int i = 0; i < sclera; ++i) {
+    // Not loops of none or one turn, which once saved software GL a side that no pixel takes: it keeps
+    // in memory what loops compute, and takes half as long again.
+    bool is_sclera = s.cornea < 0.998;
+    if (s.cornea > 0.002) body += s.cornea * iris_radiance(s);
+    if (is_sclera) {
         s = on_sclera(s);
         body += (1.0 - s.cornea) * sclera_radiance(s);
     }
@@ -48,7 +48,6 @@ vec3 eye_radiance(Surface s) {
 void main() {
     place_eye();
     vec3 radiance = vec3(0.0);
-    int seen = between_lids(v_p_eye) ? 1 : 0;
-    for (int i = 0; i < seen; ++i) radiance = eye_radiance(surface_at(v_p_eye, v_n_eye));
+    if (between_lids(v_p_eye)) radiance = eye_radiance(surface_at(v_p_eye, v_n_eye));
     f_radiance = vec4(radiance, 2.0);
 }

@@ -20,8 +20,7 @@ void main() {
     vec3 p_eye = vec3(xy, height);
     vec3 n_eye = is_globe ? p_eye : vec3(-slope * xy / max(r, 1e-5), 1.0);
     f_shade = vec4(vec3(0.5), 0.0);
-    int seen = between_lids(p_eye) ? 1 : 0;
-    for (int i = 0; i < seen; ++i)
+    if (between_lids(p_eye))
         f_shade = vec4(sky_share(p_eye, normalize(n_eye)),
                        sun_reaching(p_eye, turned_to_eye(u_sun_direction)));
 }

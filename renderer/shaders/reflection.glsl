@@ -52,11 +52,10 @@ vec3 sun_highlight(Surface s, vec3 n_tear) {
     float exponent = SCLERA >= HIGH ? spread(FILM_EXPONENT, s.film_variance) : SCLERA_EXPONENT;
     float on_cornea = 0.0, on_sclera = 0.0;
     // Farther than 18 degrees from the mirror's direction every lobe here is below 1e-3.
-    int cornea = REFLECTION >= MEDIUM && s.cornea > 0.002 && dot(n_tear, h) > 0.95 ? 1 : 0;
-    int sclera = s.cornea < 0.998 && dot(s.n_film, h) > 0.95 ? 1 : 0;
-    for (int i = 0; i < cornea; ++i)
+    if (REFLECTION >= MEDIUM && s.cornea > 0.002 && dot(n_tear, h) > 0.95)
         on_cornea = highlight_on(n_tear, s, l, REFLECTION >= HIGH, CORNEA_EXPONENT);
-    for (int i = 0; i < sclera; ++i) on_sclera = highlight_on(s.n_film, s, l, false, exponent);
+    if (s.cornea < 0.998 && dot(s.n_film, h) > 0.95)
+        on_sclera = highlight_on(s.n_film, s, l, false, exponent);
     return u_sun_irradiance * s.sun * mix(on_sclera, on_cornea, s.cornea);
 }
 
