@@ -11,7 +11,7 @@ import pytest
 from sqlalchemy import event, text
 from sqlalchemy.exc import OperationalError
 
-from study.data.commits import LARGEST
+from study.data.commits import BETWEEN, LARGEST
 from study.data.database import Database
 from study.data.schema import StudyRow
 
@@ -111,3 +111,24 @@ def test_a_group_ends_before_it_grows_without_end(db: Database) -> None:
     at_once(db, *(lambda n=n: add(db, f"s{n}") for n in range(LARGEST + 5)))
     assert len(keys(db)) == LARGEST + 5
     assert len(made) >= 2
+
+
+def test_who_writes_for_many_waits_for_few_and_for_nobody_after_them(db: Database) -> None:
+    order: list[str] = []
+    made = commits(db)
+
+    def one() -> None:
+        with db.writing():
+            order.append(f"one of {len(made)}")
+
+    def many() -> None:
+        with db.batch():
+            order.append(f"many of {len(made)}")
+
+    done = at_once(db, *[one] * 12, many)
+    assert [each.exception() for each in done] == [None] * 13
+    # The one who held the turn counts among those who came before.
+    first = order.index("many of 0")
+    assert first == BETWEEN - 1
+    # The many were on the disk before anybody else wrote.
+    assert set(order[first + 1 :]) == {"one of 1"}
