@@ -106,6 +106,8 @@ def test_a_still_shows_any_size_with_the_lods_that_follow_from_it(
     assert "--frame: a frame has its own distance" in capsys.readouterr().err
     assert main(["still", "--switching", "instant", "--effect", "caustics=off"]) == 1
     assert "--switching: takes the levels from a policy" in capsys.readouterr().err
+    assert main(["still", "--iris-px", "80", "--switching", "blended", "--right", "low"]) == 1
+    assert "leave --left and --right out" in capsys.readouterr().err
     assert main(["still", "--iris-px", "300"]) == 1
     assert "approach_end_px: 300 is too large; one camera shows" in capsys.readouterr().err
 

@@ -115,6 +115,10 @@ def _by_size(spec: ClipSpec, options: argparse.Namespace, policy: LodPolicy) -> 
         return spec
     if options.effect or options.only_effect:
         raise CommandError("--switching: takes the levels from a policy; leave effects out")
+    if {options.left, options.right} != {"ultra"}:  # the defaults
+        raise CommandError(
+            "--switching: takes the LoDs from a policy; leave --left and --right out"
+        )
     return replace(
         spec,
         left=policy.finest,
