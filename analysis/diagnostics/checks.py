@@ -27,9 +27,9 @@ _WORDS: Final[Mapping[str, str]] = {
     BY_PERSON: "some people's ratings scatter more, others' less, than it allows for",
     BY_CELL: "ratings of some LoDs scatter more, of others less, than it allows for",
     **{
-        f"{end} rating by {of}": f"{words} the {end} rating more often, others less, than it expects"
+        f"{end} rating by {of}": f"{who} the {end} rating more often, others less, than it expects"
         for end in (LOWEST, HIGHEST)
-        for of, words in ((PEOPLE, "some people give"), (CELLS, "some LoDs get"))
+        for of, who in ((PEOPLE, "some people give"), (CELLS, "some LoDs get"))
     },
 }
 _LEVEL: Final = 0.05

@@ -2,7 +2,7 @@
 
 Likelihood-ratio tests like R's ``scale_test`` and ``nominal_test`` (package ordinal): the noise, or
 the distances between thresholds, may differ between the levels of a factor. People's leniency is
-in all fits, priors are in none.
+in all fits; priors (LOOSE) only keep what the answers leave open from running away.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from analysis.models.counts import Counts
 from analysis.models.fitting import OrdinalFit, fit
 from analysis.models.nesting import best_log_likelihood
 from analysis.models.ordinal import LENIENCY, OrdinalModel
+from analysis.models.priors import LOOSE
 
 Floats = NDArray[np.float64]
 SCALE, CATEGORIES = "scale", "categories"
@@ -41,11 +42,12 @@ def odds_tests(
     takes it as chi-squared after the share of answers that the locations leave over. A test that
     the answers do not allow is empty and its ``note`` says why.
     """
-    used, own = _used(model, counts)
-    if used.categories < 3:
-        note = f"people used {used.categories} of the scale's categories; it takes three"
+    count = int((counts.table.sum(axis=(0, 1)) > 0).sum())
+    if count < 3:
+        note = f"people used {count} of the scale's categories; it takes three"
         return _empty(factors, note)
-    plain = fit(used, own, weights=weights)
+    used, own = _used(model, counts)
+    plain = fit(used, own, priors=LOOSE, weights=weights)
     rows = []
     for factor, columns in factors.items():
         for test in (SCALE, CATEGORIES):

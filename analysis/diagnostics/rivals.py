@@ -19,7 +19,7 @@ from analysis.models.fitting import OrdinalFit, Problem, fit
 from analysis.models.grids import thinned
 from analysis.models.optimum import climb
 from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE, OrdinalModel
-from analysis.models.priors import PRIORS
+from analysis.models.priors import LOOSE, PRIORS
 from analysis.models.quadrature import normal_grid
 
 Floats = NDArray[np.float64]
@@ -96,9 +96,10 @@ def _best(found: OrdinalFit) -> float:
     counts = found.counts
     work = counts.people * counts.stimuli * counts.categories * found.grid.log_weights.size
     if work <= _QUICK:
-        target = Problem(found.model, counts, None, found.weights).target(found.grid)
+        problem = Problem(found.model, counts, LOOSE, found.weights)
+        target = problem.target(found.grid)
         best = climb(target, found.parameters, inverse=found.covariance)[0]
-        return -target(best)[0]
+        return problem.value(best, found.grid)[0]
     # So many answers that the priors hardly matter: to second order of what they do.
     means, sds = np.array([PRIORS[kind] for kind in found.model.kinds]).T
     pull = (found.parameters - means) / sds**2

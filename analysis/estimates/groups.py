@@ -33,6 +33,11 @@ QUESTIONS: Final[Mapping[str, str]] = {
     "glasses": "glasses",
 }
 AGES: Final = ((0, 24), (25, 39), (40, 59), (60, 130))
+BANDS: Final = (
+    f"up to {AGES[0][1]}",
+    *(f"{low} to {high}" for low, high in AGES[1:-1]),
+    f"{AGES[-1][0]} and over",
+)
 BIAS, SCATTER, FOLLOWING = "bias", "scatter", "following"
 OUTCOMES: Final[Mapping[str, str]] = {
     BIAS: "mean rating, points",
@@ -124,15 +129,14 @@ def _groups(question: str, people: pd.DataFrame, participants: pd.DataFrame) -> 
     own = people["participant"].map(said)
     if question != "age":
         return own.astype("string")
-    bands = [f"{low} to {high}" for low, high in AGES]
-    bands[0], bands[-1] = f"up to {AGES[0][1]}", f"{AGES[-1][0]} and over"
     edges = [AGES[0][0] - 0.5, *(high + 0.5 for _, high in AGES)]
-    return pd.Series(pd.cut(own.astype(float), edges, labels=bands), dtype="string")
+    return pd.Series(pd.cut(own.astype(float), edges, labels=list(BANDS)), dtype="string")
 
 
 def _question(question: str, groups: pd.Series, people: pd.DataFrame) -> Iterator[dict[str, Any]]:
     known = groups.notna().to_numpy(dtype=bool)
-    names = list(groups[known].value_counts().sort_index().index)
+    own = set(groups[known])
+    names = [*(band for band in BANDS if band in own), *sorted(own - set(BANDS))]
     if not names:
         yield {"question": question, "note": NOT_ASKED}
         return

@@ -195,7 +195,11 @@ def _check(model: OrdinalModel, counts: Counts, priors: Priors | None) -> None:
 
 
 def _start(model: OrdinalModel, counts: Counts) -> Floats:
-    """Start at thresholds that fit all answers taken together, and no differences."""
+    """Start at thresholds that fit all answers taken together, and differences of mean answers.
+
+    Without those differences a climb may end where contrast and differences both have the wrong
+    sign: a LoD that looks worse, or whose partner looks better, rates almost alike.
+    """
     share = counts.table.sum(axis=(0, 1)) + 0.5
     cut = model.link.quantile(np.cumsum(share)[:-1] / share.sum())
     parameters = np.zeros(len(model.names))
@@ -206,4 +210,31 @@ def _start(model: OrdinalModel, counts: Counts) -> Floats:
     for place, kind in enumerate(model.kinds):
         if kind in ("log_height", "middle", "log_width"):
             parameters[place] = PRIORS[kind][0]
+    is_difference = np.array([kind == "location" for kind in model.kinds])
+    if is_difference.any():
+        own, middle = _differences(model, counts, parameters, is_difference)
+        parameters[is_difference] = own
+        parameters[0] += middle
     return parameters
+
+
+def _differences(
+    model: OrdinalModel, counts: Counts, parameters: Floats, which: NDArray[np.bool_]
+) -> tuple[Floats, float]:
+    """Regress stimuli's mean answers, in scatters of all answers; and where that puts the mean."""
+    given = counts.table.sum(axis=0)
+    total, grades = given.sum(axis=1), np.arange(model.categories)
+    shown = total > 0
+    mean = given[shown] @ grades / total[shown]
+    everything = given.sum(axis=0)
+    centre = everything @ grades / everything.sum()
+    scatter = np.sqrt(everything @ (grades - centre) ** 2 / everything.sum())
+    if not scatter > 0:
+        return np.zeros(int(which.sum())), 0.0
+    place = model.slices["location"]
+    design = model.predictor.jacobian(parameters[place])[shown][:, which[place]]
+    often = total[shown]
+    with_level = np.column_stack([np.ones(len(often)), design])
+    square = with_level.T @ (often[:, None] * with_level) + np.eye(with_level.shape[1])
+    found = np.linalg.solve(square, with_level.T @ (often * (mean - centre) / scatter))
+    return found[1:], float(often @ design @ found[1:] / often.sum())

@@ -19,6 +19,7 @@ from analysis.models.quadrature import Grid
 
 Floats = NDArray[np.float64]
 _FLOOR: Final = -1e6  # instead of log 0: zero counts times it stay zero
+_FARTHEST: Final = 60.0  # a logarithm of scatter or stretch: without priors a climb may try any
 _BLOCK: Final = 2_000_000  # numbers per block of people x nodes
 
 
@@ -42,10 +43,10 @@ def cells(model: OrdinalModel, parameters: Floats, grid: Grid) -> Cells:
     spread = model.spreads(parameters)
     tau = _thresholds(parameters, model.steps(parameters))
     middle = (tau @ model.middle())[:, None]
-    stretch = np.exp(spread[2] * nodes[2])
+    stretch = np.exp(np.clip(spread[2] * nodes[2], -_FARTHEST, _FARTHEST))
     cut = middle[..., None] + stretch * (tau - middle)[..., None]
     noise = model.log_scales(parameters)[:, None, None] + spread[1] * nodes[1]
-    shrink = np.exp(-noise)
+    shrink = np.exp(-np.clip(noise, -_FARTHEST, _FARTHEST))
     eta = model.locations(parameters)
     bounds = (cut - eta[:, None, None] - spread[0] * nodes[0]) * shrink
     log_p = np.maximum(model.link.log_intervals(bounds), _FLOOR)

@@ -34,3 +34,17 @@ All cells are measured from the first one, most often the least real: at a sd of
 to it together, the contrast made up for it, and of 10 people's intervals of the greatest loss of
 realism only 80 % held the truth (docs/power.md).
 """
+
+LOOSE: Final[Priors] = {
+    **dict.fromkeys(PRIORS, (0.0, 10.0)),
+    "threshold": (0.0, 100.0),
+    "location": (0.0, 100.0),
+    "log_step": (0.0, 20.0),
+    "nominal": (0.0, 20.0),
+    f"log_sd:{LENIENCY}": (float(np.log(0.5)), 10.0),
+    f"log_sd:{INCONSISTENCY}": (float(np.log(0.2)), 10.0),
+    f"log_sd:{STYLE}": (float(np.log(0.2)), 10.0),
+}
+"""So wide that they only keep from running away what answers leave without a bound: the greatest
+likelihood to some thousandths, for log-likelihoods that models are compared by.
+"""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
@@ -12,9 +13,11 @@ from analysis.screening.flags import FLAGS, typical_slope
 from analysis.wording import interval, number, people, percent
 
 _MOST: Final = 60
+_CLEAR: Final = math.log(1000.0)
 _HEAD: Final = (
     *("participant", "flags", "weight", "ratings", "bias", "inconsistency", "slope"),
-    *("same rating", "ends", "side", "false alarms", "certified", "BT.500 would reject"),
+    *("same rating", "ends", "side", "looking", "false alarms", "certified"),
+    "BT.500 would reject",
 )
 
 
@@ -31,7 +34,9 @@ def observers_table(
         "Bias and inconsistency (points): ITU-T P.910 Annex E by alternating projection. Slope: of "
         "the person's ratings on the others' means; here a typical one is "
         f"{number(typical_slope(signals))}, 0 has nothing to do with what was shown, a negative "
-        "one turns the scale round. Side: share of comparisons that name one side. False alarms: "
+        "one turns the scale round. Side: share of comparisons that name one side. Looking: how "
+        "many times likelier the answers are from someone who looked than from someone who did "
+        "not. False alarms: "
         "yes to pairs of equal LoDs. Certified: presentations that passed the study's rule. BT.500 "
         "would reject: ITU-R BT.500 A1-2.3.1; too strict for few ratings, shown only. Nobody was "
         "excluded: flags and great inconsistency lower a person's weight in the models."
@@ -119,7 +124,18 @@ def _person(
         percent(row["same_share"]),
         percent(row["ends_share"]),
         side,
+        _looking(row["looking"]),
         alarms if row["catch_pairs"] else "–",
         percent(row["certified_share"]),
         "yes" if row["bt500"] else "no",
     )
+
+
+def _looking(log_odds: float) -> str:
+    """Write odds for a reader: as "12 : 1", beyond a thousand only that."""
+    if pd.isna(log_odds):
+        return "–"
+    if abs(log_odds) > _CLEAR:
+        return "> 1000 : 1" if log_odds > 0 else "< 1 : 1000"
+    odds = math.exp(abs(log_odds))
+    return f"{odds:.0f} : 1" if log_odds > 0 else f"1 : {odds:.0f}"

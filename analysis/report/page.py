@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -44,14 +44,22 @@ REPORT: Final = "report.html"
 class Parts:
     """What the report is put together from, beside the summary and the drawn charts.
 
-    ``findings`` and ``people`` are the sections before and after the quality of the data.
+    ``findings`` and ``people`` are the sections before and after the quality of the data;
+    ``could_show`` follows the verdicts, ``fit`` the people, ``rivals`` stands among the methods.
     """
 
     audit: Audit
     costs: Costs | None
     inference: Inference
+    could_show: Section
     findings: Sequence[Section]
     people: Sequence[Section]
+    fit: Section
+    rivals: Section
+
+    def sections(self) -> Iterator[Section]:
+        """Yield every section, in the report's order."""
+        yield from (self.could_show, *self.findings, *self.people, self.fit, self.rivals)
 
 
 def report_page(
@@ -83,6 +91,9 @@ def report_page(
         quality_tables=quality_tables(tables),
         findings_more=parts.findings,
         people_more=parts.people,
+        could_show=parts.could_show,
+        fit=parts.fit,
+        rivals=parts.rivals,
         methods=methods(tables, parts.costs),
         label=SIMULATED,
     )

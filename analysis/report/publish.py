@@ -23,6 +23,12 @@ from analysis.inference import infer
 from analysis.quality import quality_statements
 from analysis.report.answer import Finding, findings
 from analysis.report.data import csv_bytes, further_tables
+from analysis.report.diagnostic_sections import (
+    detectable_section,
+    fit_section,
+    groups_section,
+    rivals_section,
+)
 from analysis.report.limits import limits
 from analysis.report.page import REPORT, Parts, report_page
 from analysis.report.sections import (
@@ -85,17 +91,32 @@ def analyse(
     audit = audit_tables(tables.ratings, tables.comparisons)
     inference = infer(tables, margins=margins, weights=weights_of(tables) or None, costs=costs)
     found = tuple(findings(tables, costs))
+    observers = observers_section(tables, inference)
     parts = Parts(
         audit=audit,
         costs=costs,
         inference=inference,
+        could_show=detectable_section(inference),
         findings=(claims_section(tables, manual), text_section(tables, manual)),
-        people=(observers_section(tables, inference), reliability_section(tables)),
+        people=(
+            observers,
+            reliability_section(tables),
+            groups_section(tables, observers.data.get("observers")),
+        ),
+        fit=fit_section(inference.realism),
+        rivals=rivals_section(inference.realism),
     )
     numbers = further_tables(tables, audit, costs, found) | inference.tables()
-    for section in (*parts.findings, *parts.people):
+    for section in parts.sections():
         numbers |= section.data
-    material = Material(tables, costs, inference, numbers.get("verdict-sensitivity"))
+    material = Material(
+        tables,
+        costs,
+        inference,
+        sensitivity=numbers.get("verdict-sensitivity"),
+        diagnosed=numbers.get("residuals"),
+        predicted=numbers.get("predicted-shares"),
+    )
     numbers |= {chart.name: chart.table(material) for chart in CHARTS}
     files = draw_charts(material, processes=processes)
     for name, table in numbers.items():
