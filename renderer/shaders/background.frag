@@ -29,9 +29,7 @@ void main() {
     vec3 d = normalize(v_direction);
     vec2 uv = vec2(atan(d.x, d.z) / (2.0 * pi) + 0.5, asin(clamp(d.y, -1.0, 1.0)) / pi + 0.5);
     vec3 radiance = spline_lookup(u_panorama, uv);
-    int is_between = u_farther_share > 0.0 ? 1 : 0;
-    for (int i = 0; i < is_between; ++i) {
+    if (u_farther_share > 0.0)
         radiance = mix(radiance, spline_lookup(u_farther_panorama, uv), u_farther_share);
-    }
     o_radiance = vec4(radiance, 1.0);
 }

@@ -53,11 +53,9 @@ void main() {
     if (LOCK > 1) half_px *= smoothstep(0.02, 0.2, length(cross(in_tangent, v)));
     v_ribbon = vec4(in_ribbon.x * (half_px + MARGIN_PX), half_px, in_ribbon.z, in_ribbon.w);
     bool is_drawn = in_ribbon.w <= kept;
-    // Software GL computes both sides of an if, but skips a loop that no vertex of a block enters.
     bool is_black = MARK == 1 && in_colour.r == 0.0;   // a shadow
-    int lit = is_drawn && !is_black ? 1 : 0;
     FibreLight light = FibreLight(vec3(0.0), vec3(0.0));
-    for (int i = 0; i < lit; ++i)
+    if (is_drawn && !is_black)
         light = fibre_light(in_tangent, v, in_colour.rgb, in_ribbon.z, in_sun);
     v_body = light.body;
     v_glint = light.glint;
