@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
+import dask
 import pytest
 from distributed import Client, LocalCluster
 
@@ -38,14 +39,19 @@ RENDERER_TESTS = Path(__file__).parent / "renderer" / "production"
 
 @contextmanager
 def local_cluster(workers: int) -> Iterator[LocalCluster]:
-    with LocalCluster(
-        n_workers=workers,
-        threads_per_worker=1,
-        processes=True,
-        dashboard_address="127.0.0.1:0",
-        memory_limit=0,
-        silence_logs=60,  # what a killed worker makes it say is meant to happen here
-    ) as started:
+    # Killed workers come back slowly on a loaded machine; Dask gives them up after 15 s.
+    patient = dask.config.set({"distributed.deploy.lost-worker-timeout": "300s"})
+    with (
+        patient,
+        LocalCluster(
+            n_workers=workers,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address="127.0.0.1:0",
+            memory_limit=0,
+            silence_logs=60,  # what a killed worker makes it say is meant to happen here
+        ) as started,
+    ):
         yield started
 
 
@@ -67,7 +73,7 @@ def cluster_of_two(folder_of_orders: Path) -> Iterator[LocalCluster]:
 def address(cluster_of_two: LocalCluster) -> str:
     """The cluster's address once both workers are there: a test before may have killed them."""
     with Client(cluster_of_two.scheduler_address) as client:
-        client.wait_for_workers(2, timeout=120)
+        client.wait_for_workers(2, timeout=300)
     return str(cluster_of_two.scheduler_address)
 
 
