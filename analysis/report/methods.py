@@ -56,6 +56,10 @@ def _models() -> list[str]:
         "detection, with pairs of equal LoDs as its zero. All are fitted with weak normal priors "
         "(maximum of the posterior). Intervals are quantiles of 4000 draws from Student's t about "
         "the fit, with one degree of freedom less than there are people.",
+        "The ratings' model is checked by randomised quantile residuals (Dunn and Smyth 1996), by "
+        "posterior-predictive shares of the scale's ends and by likelihood-ratio tests of "
+        "proportional odds, and compared with others by AIC and by leaving people out. Groups of "
+        "people are compared by Welch's t on one number per person, adjusted after Holm.",
     ]
 
 
