@@ -5,9 +5,10 @@ from __future__ import annotations
 import multiprocessing
 import sys
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.sharedctypes import Synchronized
 from typing import Final
 
 from analysis.charts.catalogue import CHARTS, Chart
@@ -15,12 +16,13 @@ from analysis.charts.material import Material
 from analysis.charts.style import figure_bytes
 
 _SHARED: Final[dict[str, Material]] = {}
+_TAKEN: Final[dict[str, Synchronized[int]]] = {}  # how many charts somebody has taken
 
 
 def draw_charts(material: Material, *, processes: int = 1) -> dict[str, bytes]:
     """Return every chart as SVG and PNG by file name; one figure serves both.
 
-    With two ``processes`` a fork of this one draws every other chart, where the system can fork.
+    With two ``processes`` a fork of this one draws beside it, where the system can fork.
     """
     if processes > 1 and sys.platform == "linux":
         return _draw_shared(material)
@@ -35,27 +37,42 @@ def _draw(material: Material, charts: Iterable[Chart]) -> dict[str, bytes]:
     return files
 
 
+def _untaken(taken: Synchronized[int]) -> Iterator[Chart]:
+    """Yield the next chart that nobody has taken, until none is left."""
+    while True:
+        with taken.get_lock():
+            place = taken.value
+            taken.value += 1
+        if place >= len(CHARTS):
+            return
+        yield CHARTS[place]
+
+
 def _draw_shared(material: Material) -> dict[str, bytes]:
-    """Draw one half while a fork draws the other; alone if the fork dies.
+    """Draw while a fork draws too, each the next chart that is left; alone if the fork dies.
 
     A fork has the libraries and the material at no cost: a fresh process would take as long to
     start as it would save.
     """
-    _SHARED["material"] = material
+    context = multiprocessing.get_context("fork")
+    taken = context.Value("i", 0)
+    _SHARED["material"], _TAKEN["charts"] = material, taken
     try:
-        with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("fork")) as pool:
+        with ProcessPoolExecutor(1, mp_context=context) as pool:
             with warnings.catch_warnings():
                 # Python warns of forking beside threads: the child draws, and takes no lock.
                 warnings.simplefilter("ignore", DeprecationWarning)
-                other = pool.submit(_draw_odd)
-            own = _draw(material, CHARTS[::2])
+                other = pool.submit(_draw_beside)
+            own = _draw(material, _untaken(taken))
             try:
                 return own | other.result()
             except BrokenProcessPool:  # killed, as where memory ran out
-                return own | _draw(material, CHARTS[1::2])
+                left = [chart for chart in CHARTS if f"{chart.name}.png" not in own]
+                return own | _draw(material, left)
     finally:
         _SHARED.clear()
+        _TAKEN.clear()
 
 
-def _draw_odd() -> dict[str, bytes]:
-    return _draw(_SHARED["material"], CHARTS[1::2])
+def _draw_beside() -> dict[str, bytes]:
+    return _draw(_SHARED["material"], _untaken(_TAKEN["charts"]))

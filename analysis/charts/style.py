@@ -176,7 +176,7 @@ def figure_bytes(figure: Figure, kind: str) -> bytes:
     buffer = io.BytesIO()
     more: dict[str, Any] = {"metadata": {"Date": None}}
     if kind == "png":
-        more = {"pil_kwargs": {"compress_level": 3}}  # half the time of 6, a tenth more bytes
+        more = {"pil_kwargs": {"compress_level": 1}}  # a third of the time of 6, a fifth more bytes
     # The salt of SVG ids is a setting of the whole process; nothing else here depends on it.
     with mpl.rc_context({"svg.hashsalt": "ocularist", "svg.fonttype": "path"}):
         figure.savefig(buffer, format=kind, dpi=PNG_DPI, **more)
