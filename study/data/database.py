@@ -1,4 +1,4 @@
-"""Open a database: transactions, migrations. SQLite by default, PostgreSQL by URL.
+"""Open a database: transactions. SQLite by default, PostgreSQL by URL.
 
 A transaction that has ended is on the disk. What differs between the two kinds is in ``engines``.
 """
@@ -9,13 +9,10 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from datetime import UTC, datetime
-from importlib import resources
-from typing import Any, Final, TypeVar
+from typing import Any, TypeVar
 
-from alembic import command
-from alembic.config import Config
 from alembic.util import CommandError
-from sqlalchemy import Connection, Engine, make_url, text
+from sqlalchemy import Connection, Engine, make_url
 from sqlalchemy.engine import URL
 from sqlalchemy.exc import ArgumentError, DataError, DBAPIError
 from sqlalchemy.orm import Session
@@ -24,11 +21,11 @@ from study.data.batches import run
 from study.data.commits import GroupCommit
 from study.data.engines import DRIVER, make_engine, reading_engine
 from study.data.errands import Eyes, Make, look
+from study.data.migrating import bring_up_to_date
 from study.data.refusals import UnusablePayloadError
 
 T = TypeVar("T")
 Clock = Callable[[], datetime]
-MIGRATION_LOCK: Final = 71_202_611  # any number, the same for all who migrate one database
 
 
 class DatabaseError(ValueError):
@@ -157,7 +154,7 @@ def open_database(url: str, *, clock: Clock = utc_now) -> Database:
     name = parsed.render_as_string(hide_password=True)
     try:
         engine = make_engine(parsed)
-        _bring_up_to_date(engine)
+        bring_up_to_date(engine)
     except ModuleNotFoundError as error:
         raise DatabaseError(
             f"{name}: the driver {error.name} is not installed; install it, or name another one: "
@@ -185,25 +182,3 @@ def _url(text_: str) -> URL:
     if url.get_backend_name() == "sqlite" and url.database in (None, "", ":memory:"):
         raise DatabaseError(f"{url}: an SQLite database has to be a file: sqlite:///study.sqlite3")
     return url
-
-
-def _bring_up_to_date(engine: Engine) -> None:
-    try:
-        _migrate(engine)
-    except BaseException:
-        engine.dispose()
-        raise
-
-
-def _migrate(engine: Engine) -> None:
-    """Bring the tables up to date; of several processes one migrates, the others wait."""
-    with (
-        resources.as_file(resources.files("study.data") / "migrations") as folder,
-        engine.begin() as connection,
-    ):
-        if engine.dialect.name == "postgresql":
-            connection.execute(text(f"SELECT pg_advisory_xact_lock({MIGRATION_LOCK})"))
-        config = Config()
-        config.set_main_option("script_location", str(folder).replace("%", "%%"))
-        config.attributes["connection"] = connection
-        command.upgrade(config, "head")
