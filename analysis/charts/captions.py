@@ -6,12 +6,13 @@ from typing import Final
 
 CAPTIONS: Final = {
     "decision-chart": (
-        "Which LoD is enough at each distance. Shade and percentage: share of draws from what"
-        " the data leave open in which the LoD is the cheapest that is enough (those of a "
-        "column add up to 100 %). Word: the verdict by the margins, LoDs being tested from "
-        "the highest down until one fails. Frame: the answer, the cheapest LoD that was shown"
-        " to be enough. Milliseconds, where given, are per frame. Below: which verdicts hang on a "
-        "single person."
+        "Which LoD is enough at each distance. Percentage and shade: how likely it is, by what "
+        "the answers leave open, that this LoD is the cheapest one that is enough there (a column "
+        "adds up to 100 %). Word: the verdict by the margins: equivalent (shown to be enough), "
+        "different (shown not to be), not shown (open: more people would tell); LoDs are tested "
+        "from the highest down until one fails. Frame: the answer, the cheapest LoD that was "
+        "shown to be enough. Milliseconds, where given, are per frame. Below: which verdicts hang "
+        "on a single person."
     ),
     "contrasts": (
         "Each LoD against the highest one at its distance, in the order of testing. Left: "

@@ -71,6 +71,6 @@ def detection(material: Material) -> Figure:
     )
     sensitivity.set_xlabel("sensitivity d′, sd of the percept", fontsize=SMALL)
     yes.set_xlabel("share of people who say yes", fontsize=SMALL)
-    yes.set_xlim(0, 1)
+    yes.set_xlim(-0.02, 1.02)  # symbols at the ends stand whole
     yes.xaxis.set_major_formatter(lambda value, _: f"{100 * value:.0f} %")
     return chart.figure
