@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from analysis.charts.material import Material
-from analysis.charts.parts import apart, distance_label
+from analysis.charts.parts import distance_label
 from analysis.charts.scales import NO_MODEL
 from analysis.charts.style import (
     INK,
@@ -33,7 +33,8 @@ NO_COST: Final = (
 )
 NO_BOTH: Final = "No LoD was both rated by two people or more and timed at the same distance."
 _GREY: Final = "#b5b5b5"
-_NEAR: Final = 0.12  # of the axis: symbols so close share a column of names
+_NEAR: Final = 0.16  # of the axis: names of crosses so close are stacked
+_LINE: Final = 0.085  # of the axis: height of a name
 
 
 def points_table(material: Material) -> pd.DataFrame:
@@ -61,7 +62,8 @@ def realism_against_cost(material: Material) -> Figure:
     lods = lod_order(material.tables.ratings)
     low, high = material.tables.scale
     ends = [end for point in points for end in point.rating[1:]]
-    grid[0].set_ylim(min(ends) - 0.25, max(ends) + 0.25)
+    room = 0.3 * (max(ends) - min(ends)) + 0.1  # for names above the crosses
+    grid[0].set_ylim(min(ends) - 0.15, max(ends) + room)
     for place, axes in enumerate(grid):
         if place >= len(distances):
             axes.set_visible(False)
@@ -91,14 +93,14 @@ def _draw_panel(axes: Axes, points: Sequence[ParetoPoint], lods: Sequence[str]) 
         axes.plot([ms, ms], [low, high], color=colour, linewidth=1.5, zorder=2)
         axes.plot([ms], [rating], marker=lod_marker(point.lod, lods), color=colour, markersize=7,
                   markeredgecolor=INK if point.is_on_front else QUIET, zorder=3)  # fmt: skip
-    axes.set_xlim(0, 1.22 * max(point.ms[2] for point in points))
+    axes.set_xlim(0, 1.12 * max(point.ms[2] for point in points))
     _name(axes, points)
 
 
 def _name(axes: Axes, points: Sequence[ParetoPoint]) -> None:
-    """Write each LoD beside its symbol; names of symbols that lie close together stand apart."""
+    """Write each LoD above its cross; names of crosses that lie close together are stacked."""
     low, high = axes.get_ylim()
-    near = _NEAR * axes.get_xlim()[1]
+    near, step = _NEAR * axes.get_xlim()[1], _LINE * (high - low)
     groups: list[list[ParetoPoint]] = []
     for point in sorted(points, key=lambda own: own.ms[0]):
         if groups and point.ms[0] - groups[-1][-1].ms[0] < near:
@@ -106,12 +108,11 @@ def _name(axes: Axes, points: Sequence[ParetoPoint]) -> None:
         else:
             groups.append([point])
     for own in groups:
-        right = max(point.ms[2] for point in own)
-        places = apart([p.rating[0] for p in own], least=0.1 * (high - low), low=low, high=high)
-        for point, y in zip(own, places, strict=True):
-            axes.annotate(point.lod, (right, y), xytext=(6, 6 if len(own) == 1 else 0),
-                          textcoords="offset points", va="center", fontsize=SMALL,
-                          color=INK if point.is_on_front else QUIET, zorder=4)  # fmt: skip
-            if len(own) > 1:
-                axes.plot([point.ms[0], right + 0.3 * near], [point.rating[0], y], color=_GREY,
-                          linewidth=0.6, zorder=1)  # fmt: skip
+        top = max(point.rating[2] for point in own)
+        for place, point in enumerate(own):
+            # The leftmost stands highest, so that no leader crosses a name.
+            y = top + step * (len(own) - 1 - place) + 0.2 * step
+            axes.text(point.ms[0], y, point.lod, ha="center", va="bottom", fontsize=SMALL,
+                      color=INK if point.is_on_front else QUIET, zorder=4)  # fmt: skip
+            axes.plot([point.ms[0]] * 2, [point.rating[2], y], color=_GREY, linewidth=0.6,
+                      zorder=1)  # fmt: skip
