@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from analysis import shares
 from analysis.charts import (
     by_model,
+    by_model_table,
     cells,
     choices,
     clips,
@@ -113,7 +114,7 @@ CHARTS: Final = (
           _tables(trends.perceived_against_actual),
           _tables(lambda t: rank_correlations(t.ratings))),
     Chart("perceived-by-model", "ratings", by_model.BY_MODEL, by_model.perceived_by_model,
-          by_model.by_model_table),
+          by_model_table.by_model_table),
     Chart("realism-by-distance", "ratings", trends.BY_DISTANCE,
           _tables(trends.realism_by_distance),
           _tables(lambda t: mean_ratings(t.ratings, ["distance", "lod"]))),

@@ -7,7 +7,8 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
-from analysis.charts.by_model import by_model_table, perceived_by_model
+from analysis.charts.by_model import perceived_by_model
+from analysis.charts.by_model_table import by_model_table
 from analysis.charts.material import Material
 from analysis.charts.trends import NO_ORDER
 from analysis.tables.reading import tables_from
