@@ -42,6 +42,10 @@ class Person:
 
     def press(self, selector: str) -> None:
         self.wait_until(f"document.querySelector({json.dumps(selector)})?.checkVisibility()")
+        # WebKit's driver takes what lies half below the window's edge for out of reach.
+        self.script(
+            f"document.querySelector({json.dumps(selector)}).scrollIntoView({{block: 'center'}})"
+        )
         found = self.browser.ask("FindElement", using="css selector", value=selector)
         self.browser.ask("ElementClick", id=found[ELEMENT])
 
