@@ -42,7 +42,7 @@ def observers_table(
         "excluded: flags and great inconsistency lower a person's weight in the models."
     )
     if len(signals) > _MOST:
-        note += f" The first {_MOST} of {len(signals)}; all stand in observers.csv."
+        note += f" The first {_MOST} of {len(signals)}; all stand in observer-signals.csv."
     return ReportTable("What each person's answers show.", _HEAD, rows, text_columns=2, note=note)
 
 

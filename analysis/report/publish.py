@@ -101,7 +101,7 @@ def analyse(
         people=(
             observers,
             reliability_section(tables),
-            groups_section(tables, observers.data.get("observers")),
+            groups_section(tables, observers.data.get("observer-signals")),
         ),
         fit=fit_section(inference.realism),
         rivals=rivals_section(inference.realism),

@@ -77,11 +77,11 @@ def observers_section(tables: Tables, inference: Inference) -> Section:
         return Section("Observers", ("Nobody answered anything that counts.",))
     flags, weights = flags_of(signals), observer_weights(signals)
     listed = signals.assign(
-        flags=[";".join(flags.get(str(who), ())) for who in signals["participant"]],
+        flags=["; ".join(flags.get(str(who), ())) for who in signals["participant"]],
         weight=[weights.get(str(who), 1.0) for who in signals["participant"]],
     )
     sentences = flag_sentences(flags, len(signals))
-    made, data = [observers_table(signals, flags, weights)], {"observers": listed}
+    made, data = [observers_table(signals, flags, weights)], {"observer-signals": listed}
     if flags and inference.decisions:
         found = _sensitivity(tables, inference, flags, weights)
         if found is None:

@@ -29,8 +29,8 @@ COLUMNS: Final = (
 def observer_signals(tables: Tables) -> pd.DataFrame:
     """Return one row per person who answered anything that counts; columns are COLUMNS.
 
-    looking, valuing and noticing: how far all answers, ratings and comparisons, and what was
-    noticed go with what was shown, in standard deviations of chance (``evidence``);
+    looking and upright: natural logarithms of the odds that the person looked, against that they
+    did not and against that they turned the scale round (``evidence``);
     same_share: of the person's most frequent rating; ends_share: of the lowest and the highest;
     side_share: of comparisons that name ``side``; against: comparisons in which the greater LoD
     stood on the other side, and against_share how many of them name ``side`` all the same;

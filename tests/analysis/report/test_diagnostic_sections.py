@@ -53,7 +53,7 @@ def test_rivals_stand_side_by_side_and_the_report_s_is_marked(inference: Inferen
 
 
 def test_groups_are_named_whether_asked_or_not(thesis_tables: Tables, inference: Inference) -> None:
-    observers = observers_section(thesis_tables, inference).data["observers"]
+    observers = observers_section(thesis_tables, inference).data["observer-signals"]
     section = groups_section(thesis_tables, observers)
     assert section.sentences[0] == "Not asked: glasses."
     own = [row for row in section.tables[0].rows if row[0] == "works with graphics"]
