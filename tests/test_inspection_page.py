@@ -6,7 +6,7 @@ import json
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from socket import socket
 from typing import Any
@@ -40,6 +40,7 @@ class Board:
     asked: list[tuple[str, ClipSpec, Look]] = field(default_factory=list)
     threads: set[int] = field(default_factory=set)
     closed: int = 0
+    may_draw: threading.Event = field(default_factory=threading.Event)
     gl_renderer: str = "a board"
 
     def shot(self, spec: ClipSpec, look: Look) -> Drawn:
@@ -55,6 +56,8 @@ class Board:
     def _draw(self, what: str, spec: ClipSpec, look: Look) -> Drawn:
         self.asked.append((what, spec, look))
         self.threads.add(threading.get_ident())
+        if look.time == 7.0:
+            self.may_draw.wait(30)
         if look.time == 13.0:
             raise RuntimeError("no more paper")
         facts: dict[str, object] = {
@@ -74,18 +77,29 @@ def board() -> Board:
 
 
 @contextmanager
-def served(board: Board) -> Iterator[str]:
-    """The page on a free port; its address. Afterwards it has ended."""
+def served(
+    board: Board, *, log_level: str = "critical", until: threading.Event | None = None
+) -> Iterator[str]:
+    """The page on a free port; its address. Afterwards it has ended.
+
+    Nothing that the board still draws is done before ``until`` is set.
+    """
     app = create_inspection(BASE, lambda: board, hosts=("127.0.0.1",))
     with socket() as listening:
         listening.bind(("127.0.0.1", 0))
-        server = uvicorn.Server(uvicorn.Config(app, log_level="critical", access_log=False))
+        config = uvicorn.Config(
+            app, log_level=log_level, access_log=False, timeout_graceful_shutdown=1
+        )
+        server = uvicorn.Server(config)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
         thread.start()
         try:
             yield f"http://127.0.0.1:{listening.getsockname()[1]}"
         finally:
             server.should_exit = True
+            if until is not None:
+                until.wait(30)
+            board.may_draw.set()
             thread.join(10)
 
 
@@ -121,6 +135,27 @@ def test_the_renderer_is_closed_in_its_own_thread(board: Board) -> None:
         httpx.get(f"{address}/frame", timeout=30)
     assert board.closed == 1
     assert len(board.threads) == 1
+
+
+def test_a_picture_that_is_not_drawn_in_time_is_given_up_without_a_trace(
+    board: Board, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = threading.Event()
+
+    def ask(address: str) -> None:
+        with suppress(httpx.HTTPError):
+            answers.append(httpx.get(f"{address}/frame?time=7", timeout=30).status_code)
+        asked.set()
+
+    answers: list[int] = []
+    with served(board, log_level="error", until=asked) as address:
+        threading.Thread(target=ask, args=(address,), daemon=True).start()
+        while not board.asked:
+            time.sleep(0.01)
+    assert asked.is_set()
+    assert answers in ([], [503])
+    assert "Traceback" not in capsys.readouterr().err
+    assert board.closed == 1
 
 
 @pytest.mark.parametrize(

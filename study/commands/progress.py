@@ -50,7 +50,8 @@ class ClipBar:
         if left_s is None and done > self._began[1]:
             per_clip_s = (now - self._began[0]) / (done - self._began[1])
             left_s = per_clip_s * (self._total - done)
-        state = f"{done:.1f} of {self._total} clips" + time_left(left_s)
+        count = f"{done:.1f}".removesuffix(".0")
+        state = f"{count} of {self._total} clips" + time_left(left_s)
         if not self._bar.disable:
             self._bar.n = min(done, self._total)
             self._bar.set_description_str(state)

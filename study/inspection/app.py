@@ -95,6 +95,8 @@ def create_inspection(
             picture = await asyncio.get_running_loop().run_in_executor(
                 thread, lambda: draw(draughtsman())
             )
+        except asyncio.CancelledError:  # the server stops: nobody waits for this picture
+            return PlainTextResponse("The command has been stopped.", status_code=503)
         except Exception as error:
             log.exception("no picture")
             return PlainTextResponse(f"{type(error).__name__}: {error}", status_code=500)
