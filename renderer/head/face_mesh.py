@@ -199,13 +199,17 @@ def _socket(level: Floats, quads: Indices, eye: int) -> Socket:
 
 
 def _in_eye(level: Floats, quads: Indices) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Return which quads the patches replace: inside the outline, or in the socket behind."""
+    """Return which quads the patches replace: inside the outline, or in the socket behind.
+
+    Quads on the outline stay and lap over the patches: a view that grazes the cheek must not see
+    between the two.
+    """
     inside = np.zeros(len(quads), dtype=bool)
     temple, nose, up, down = OUTLINE_MM
     for eye in (0, 1):
-        x, y, z = to_patch(level[quads][:, :, :3].mean(axis=1), eye).T
+        x, y, z = np.moveaxis(to_patch(level[quads][:, :, :3], eye), -1, 0)
         ratio = (x / np.where(x > 0, temple, nose)) ** 2 + (y / np.where(y > 0, up, down)) ** 2
-        inside |= (ratio < 1.0) & (z > -40.0)
+        inside |= ((ratio < 1.0) & (z > -40.0)).all(axis=1)
     return inside
 
 

@@ -15,9 +15,10 @@ from renderer.detail import Detail
 from renderer.head.cells import sort_into_cells
 from renderer.head.character import figure
 from renderer.head.clothing import sweater
-from renderer.head.face_mesh import face_mesh
+from renderer.head.face_mesh import face_mesh, to_patch
 from renderer.head.hair import grow_hair, hair_cap, inside_hairline
 from renderer.head.head import Head
+from renderer.head.lid_outline import OUTLINE_MM
 from renderer.head.sun_shadow import build_light
 from renderer.light import Light, Sky
 
@@ -202,3 +203,19 @@ def test_shut_lids_close_the_fissure_with_lit_skin(gl: moderngl.Context, light: 
     upper = shut.rims[1].upper_mm
     lower = np.interp(upper[:, 0], *shut.rims[1].lower_mm[:, :2].T)
     assert (upper[:, 1] - lower).max() < 1e-3
+
+
+@pytest.mark.parametrize("name", ["fine", "coarse"])
+def test_the_face_laps_over_the_lids_patches_all_around(name: str) -> None:
+    """A face that ended beyond a patch's outline would let grazing views through between them."""
+    part = getattr(face_mesh(), name)
+    edges = np.sort(part.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges, owners = np.unique(edges, axis=0, return_counts=True)
+    open_points = part.points_mm[np.unique(edges[owners == 1])]
+    for eye in (0, 1):
+        x, y, z = to_patch(open_points, eye).T
+        temple, nose, up, down = OUTLINE_MM
+        reach = np.hypot(x / np.where(x > 0, temple, nose), y / np.where(y > 0, up, down))
+        around = (reach < 1.3) & (z > -30.0)
+        assert around.sum() > 40
+        assert reach[around].max() < 1.0
