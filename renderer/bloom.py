@@ -32,15 +32,21 @@ class Bloom:
         self._sums = [_target(gl, size) for size in sizes]
         self._black = gl.texture((1, 1), 4, bytes(8), dtype="f2")
         names = ("bloom_gather.frag", "bloom_halve.frag", "bloom_sum.frag")
-        self._programs = [build_program(gl, "screen.vert", fragment=name) for name in names]
+        constants = {"PX": FIRST_PX}
+        self._programs = [
+            build_program(gl, "screen.vert", fragment=name, constants=constants) for name in names
+        ]
         self._screens = [gl.vertex_array(each.gl_program, []) for each in self._programs]
 
     def blurred(self, radiance: moderngl.Texture) -> moderngl.Texture:
         """Return a picture of radiance blurred: as bright, a quarter as wide."""
         self.gl.enable_only(moderngl.NOTHING)
-        self._draw(0, self._narrow[0], u_radiance=radiance, u_px=FIRST_PX)
+        wide = radiance.size[0] // self._views
+        self._draw(
+            0, self._narrow[0], u_radiance=radiance, u_wide=wide, u_columns=-(-wide // FIRST_PX)
+        )
         for fine, coarse in zip(self._narrow, self._narrow[1:], strict=False):
-            self._draw(1, coarse, u_picture=_texture(fine))
+            self._draw(1, coarse, u_picture=_texture(fine), u_views=self._views)
         wider = self._black
         for level in reversed(range(len(WEIGHTS))):
             self._draw(
@@ -48,6 +54,7 @@ class Bloom:
                 self._sums[level],
                 u_picture=_texture(self._narrow[level]),
                 u_wider=wider,
+                u_views=self._views,
                 u_weight=WEIGHTS[level] / sum(WEIGHTS),
             )
             wider = _texture(self._sums[level])
@@ -56,7 +63,7 @@ class Bloom:
     def _draw(self, number: int, target: moderngl.Framebuffer, **uniforms: Any) -> None:
         program: Program = self._programs[number]
         target.use()
-        program.set(**uniforms, u_views=self._views)
+        program.set(**uniforms)
         self._screens[number].render(moderngl.TRIANGLES, vertices=3)
 
 
