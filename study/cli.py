@@ -85,7 +85,7 @@ class _Version(argparse.Action):
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object, **__: object) -> NoReturn:
         """Print and end."""
-        from analysis.versions import own_version
+        from analysis.words.versions import own_version
 
         print(f"ocularist {own_version()}")
         parser.exit()

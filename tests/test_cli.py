@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.versions import own_version
+from analysis.words.versions import own_version
 from study.cli import COMMANDS, build_parser, main
 
 ROOT = Path(__file__).parent.parent

@@ -13,8 +13,8 @@ from typing import TypeVar
 
 import pandas as pd
 
-from analysis.descriptive import answered
-from analysis.wording import listed
+from analysis.descriptive.means import answered
+from analysis.words.wording import listed
 
 Cell = tuple[str, str]
 T = TypeVar("T")

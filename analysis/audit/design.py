@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from analysis.audit.coverage import Coverage
-from analysis.wording import listed
+from analysis.words.wording import listed
 
 MOST_LISTED: Final = 6  # more names than these are a number
 

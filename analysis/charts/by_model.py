@@ -29,7 +29,7 @@ from analysis.charts.style import (
 )
 from analysis.charts.trends import NO_ORDER, tau_sentence
 from analysis.correlation import rank_correlations
-from analysis.wording import number
+from analysis.words.wording import number
 
 BY_MODEL: Final = "Perceived against actual LoD, by the model"
 _TOP_IN: Final = 2.6

@@ -10,7 +10,7 @@ import pandas as pd
 
 from analysis.charts.material import Material
 from analysis.charts.parts import records
-from analysis.descriptive import rating_counts
+from analysis.descriptive.means import rating_counts
 from analysis.estimates.realism import Realism
 from analysis.tables.ordering import lod_ranks
 

@@ -12,7 +12,6 @@ from typing import Final, Literal, TypeVar
 import pandas as pd
 from matplotlib.figure import Figure
 
-from analysis import shares
 from analysis.charts import (
     by_model,
     by_model_table,
@@ -39,7 +38,8 @@ from analysis.charts.captions import CAPTIONS
 from analysis.charts.material import Material
 from analysis.correlation import rank_correlations
 from analysis.curves.curve import NOTICED, PREFERRED, RATED
-from analysis.descriptive import mean_ratings, rating_counts
+from analysis.descriptive import shares
+from analysis.descriptive.means import mean_ratings, rating_counts
 from analysis.tables.reading import Tables
 
 Part = Literal["answer", "verdicts", "sizes", "ratings", "comparisons", "people"]

@@ -28,10 +28,10 @@ from analysis.charts.style import (
     scale_colours,
     tidy,
 )
-from analysis.descriptive import mean_ratings, rating_counts
+from analysis.descriptive.means import mean_ratings, rating_counts
 from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.reading import Tables
-from analysis.wording import interval, number
+from analysis.words.wording import interval, number
 
 DISTRIBUTION: Final = "Distribution of the ratings"
 MATRIX: Final = "Mean realism per LoD and distance"

@@ -16,9 +16,7 @@ from matplotlib.figure import Figure
 from analysis.charts.material import Material
 from analysis.charts.share_bars import Look, share_chart
 from analysis.charts.style import CHOICE_COLOURS, NOTICE_COLOURS
-from analysis.estimates.predicted_choices import Shares, choice_shares, pair_shares
-from analysis.estimates.preference import Cell, Preference
-from analysis.shares import (
+from analysis.descriptive.shares import (
     OUTCOMES,
     PAIR_OUTCOMES,
     clips_or_pairings,
@@ -27,9 +25,11 @@ from analysis.shares import (
     pair_comparison_shares,
     pair_notice_shares,
 )
+from analysis.estimates.predicted_choices import Shares, choice_shares, pair_shares
+from analysis.estimates.preference import Cell, Preference
 from analysis.tables.columns import NOTICED
 from analysis.tables.reading import Tables
-from analysis.wording import counted, number
+from analysis.words.wording import counted, number
 
 CLIP_COMPARED: Final = "Which eye is more realistic, per clip"
 PAIR_COMPARED: Final = "Which LoD is more realistic, per pair"

@@ -36,8 +36,8 @@ from analysis.charts.style import (
     rating_axis,
     tidy,
 )
-from analysis.descriptive import mean_ratings, person_means
-from analysis.shares import PAIRED, clips_or_pairings
+from analysis.descriptive.means import mean_ratings, person_means
+from analysis.descriptive.shares import PAIRED, clips_or_pairings
 from analysis.tables.ordering import lod_order
 from analysis.tables.reading import Tables
 

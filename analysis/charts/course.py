@@ -19,8 +19,8 @@ from analysis.charts.style import (
     new_figure,
     tidy,
 )
-from analysis.descriptive import answered, t_interval
-from analysis.wording import people
+from analysis.descriptive.means import answered, t_interval
+from analysis.words.wording import people
 
 COURSE: Final = "Over the session"
 NO_POSITIONS: Final = (

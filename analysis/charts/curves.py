@@ -37,7 +37,7 @@ from analysis.curves.curve import (
 )
 from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.reading import Tables
-from analysis.wording import people, percent
+from analysis.words.wording import people, percent
 
 _PANEL_IN: Final = 2.7
 _SIZES: Final = 2.0 ** np.arange(-8.0, 12.0)  # marks of the axis, px or degrees

@@ -30,7 +30,7 @@ from analysis.charts.style import (
 )
 from analysis.decision.verdicts import NOT_SHOWN
 from analysis.tables.ordering import distance_order, lod_order
-from analysis.wording import milliseconds, percent
+from analysis.words.wording import milliseconds, percent
 
 TITLE: Final = "Which LoD is enough, and how sure that is"
 REFERENCE: Final = "reference"

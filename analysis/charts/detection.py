@@ -12,7 +12,7 @@ from analysis.charts.material import Material
 from analysis.charts.parts import records
 from analysis.charts.rows import draw_span, row_chart, span_of
 from analysis.charts.style import ALARM, INK, SMALL, message_figure
-from analysis.wording import percent
+from analysis.words.wording import percent
 
 DETECTION: Final = "How well differences are detected"
 NO_CATCH: Final = (

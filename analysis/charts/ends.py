@@ -24,7 +24,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.diagnostics.predicted import HIGHEST, LOWEST
-from analysis.wording import number, people
+from analysis.words.wording import number, people
 
 ENDS: Final = "Are the ends of the scale used as the model expects?"
 _MOST_PEOPLE: Final = 200

@@ -20,7 +20,7 @@ from analysis.charts.rows import draw_span, row_chart, write_beside
 from analysis.charts.style import INK, SMALL, VERDICT_COLOURS, VERDICT_MARKERS, message_figure
 from analysis.decision.verdict_tables import effect_table, verdict_table
 from analysis.decision.verdicts import NOT_SHOWN
-from analysis.wording import number, people, percent
+from analysis.words.wording import number, people, percent
 
 TITLE: Final = "What is lost against the highest LoD, and who notices"
 _COLUMNS: Final = (

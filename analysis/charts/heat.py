@@ -22,9 +22,9 @@ from analysis.charts.style import (
     scale_colours,
     tidy,
 )
-from analysis.descriptive import person_means
+from analysis.descriptive.means import person_means
 from analysis.tables.ordering import in_order
-from analysis.wording import people
+from analysis.words.wording import people
 
 HEAT_MAP: Final = "What each person gave to what"
 _MOST_ROWS_NAMED: Final = 45

@@ -22,7 +22,7 @@ from analysis.charts.style import (
 )
 from analysis.estimates.joint import Joint
 from analysis.tables.ordering import lod_order
-from analysis.wording import number, people, percent
+from analysis.words.wording import number, people, percent
 
 JOINT: Final = "Ratings and comparisons on one scale"
 NOT_FITTED: Final = (

@@ -8,11 +8,11 @@ from functools import cached_property
 import pandas as pd
 
 from analysis.costs.cost import Costs
-from analysis.deciding import rng_of
 from analysis.diagnostics.predicted import predicted_shares
 from analysis.diagnostics.residuals import quantile_residuals
-from analysis.inference import Inference, infer
-from analysis.leaving_out import verdicts_without_each
+from analysis.inference.deciding import rng_of
+from analysis.inference.inferring import Inference, infer
+from analysis.inference.leaving_out import verdicts_without_each
 from analysis.screening.flags import flags_of
 from analysis.screening.signals import observer_signals
 from analysis.screening.weights import observer_weights

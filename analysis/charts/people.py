@@ -18,7 +18,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.screening.weights import observer_weights
-from analysis.wording import people
+from analysis.words.wording import people
 
 OBSERVERS: Final = "Observers: leniency and inconsistency"
 ALONE: Final = (

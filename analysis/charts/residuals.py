@@ -20,7 +20,7 @@ from analysis.charts.style import (
     new_figure,
     tidy,
 )
-from analysis.wording import counted
+from analysis.words.wording import counted
 
 RESIDUALS: Final = "Does the model of ratings fit? Its residuals"
 _MOST_POINTS: Final = 400

@@ -18,10 +18,10 @@ from analysis.charts.style import (
     lod_marker,
     message_figure,
 )
-from analysis.descriptive import mean_ratings
+from analysis.descriptive.means import mean_ratings
 from analysis.estimates.preference import Preference
 from analysis.tables.ordering import lod_order
-from analysis.wording import people
+from analysis.words.wording import people
 
 LATENT: Final = "Realism by the ordinal mixed model"
 PREFERENCE: Final = "Preference scale per distance"

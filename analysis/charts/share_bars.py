@@ -20,7 +20,7 @@ from matplotlib.patches import Patch
 
 from analysis.charts.parts import clip_label, grouped_places, head_groups, readable_on, records
 from analysis.charts.style import INK, PAGE_WIDTH_IN, SMALL, message_figure, new_figure, tidy
-from analysis.shares import PAIRED
+from analysis.descriptive.shares import PAIRED
 from analysis.tables.reading import Tables
 
 _ROW_IN: Final = 0.36

@@ -25,10 +25,10 @@ from analysis.charts.style import (
     new_figure,
     tidy,
 )
-from analysis.descriptive import mean_ratings
-from analysis.shares import clips_or_pairings
+from analysis.descriptive.means import mean_ratings
+from analysis.descriptive.shares import clips_or_pairings
 from analysis.tables.ordering import lod_order
-from analysis.wording import number
+from analysis.words.wording import number
 
 SPREAD: Final = "Where people disagree"
 TOO_FEW: Final = "It takes two people who rated the same eye; there are not so many yet."

@@ -20,7 +20,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.screening.sensitivity import COLUMNS
-from analysis.wording import counted, listed
+from analysis.words.wording import counted, listed
 
 STABILITY: Final = "Does a verdict hang on one person?"
 NO_VERDICT: Final = "No verdict could hang on anyone yet."

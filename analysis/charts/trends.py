@@ -24,10 +24,10 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.correlation import rank_correlations
-from analysis.descriptive import answered, mean_ratings, person_means
+from analysis.descriptive.means import answered, mean_ratings, person_means
 from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.reading import Tables
-from analysis.wording import number, p_value
+from analysis.words.wording import number, p_value
 
 AGAINST_LOD: Final = "Perceived against actual level of detail"
 BY_DISTANCE: Final = "Perceived realism by viewing distance"

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import ndtri, stdtr, stdtrit
 
-from analysis.descriptive import CONFIDENCE
+from analysis.descriptive.means import CONFIDENCE
 
 Floats = NDArray[np.float64]
 _NEAR_ONE: Final = 1 - 1e-15  # Fisher's z of 1 is infinite

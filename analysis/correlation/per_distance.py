@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from analysis.correlation.averages import mean_tau, repeated_measures_correlation, tau_p
 from analysis.correlation.concordance import Concordance, count_pairs
-from analysis.descriptive import answered, t_interval
+from analysis.descriptive.means import answered, t_interval
 from analysis.tables.ordering import distance_order
 
 Floats = NDArray[np.float64]

@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from analysis.curves.sizes import Measure, crossing
-from analysis.wording import number
+from analysis.words.wording import number
 
 Floats = NDArray[np.float64]
 NOTICED, PREFERRED, RATED = "noticed", "preferred", "rated"

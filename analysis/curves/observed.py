@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.descriptive import t_interval
-from analysis.shares import wilson
+from analysis.descriptive.means import t_interval
+from analysis.descriptive.shares import wilson
 
 COLUMNS = ("size", "value", "low", "high", "answers")
 

@@ -31,7 +31,7 @@ from analysis.curves.observed import loss_points
 from analysis.curves.shapes import BENT_PRIORS, Shape, bent_over
 from analysis.curves.sizes import Measure, along, with_size
 from analysis.decision.margins import Margins
-from analysis.descriptive import answered
+from analysis.descriptive.means import answered
 from analysis.estimates.stimuli import with_nuisances
 from analysis.models.combined import Beside, Scaled, Together
 from analysis.models.ordinal import LENIENCY, OrdinalModel

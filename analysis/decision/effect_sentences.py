@@ -8,7 +8,7 @@ from analysis.costs.cost import Costs
 from analysis.decision.effects import EffectVerdict, saving_of
 from analysis.decision.sentences import price
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT
-from analysis.wording import listed, number, percent
+from analysis.words.wording import listed, number, percent
 
 
 def effect_answers(

@@ -24,9 +24,9 @@ from analysis.decision.verdicts import (
     against,
     excess_of,
 )
+from analysis.estimates.multiplicity import holm
 from analysis.estimates.noticing import Noticing
 from analysis.estimates.realism import Realism
-from analysis.multiplicity import holm
 from analysis.tables.columns import EFFECTS
 
 Levels = Mapping[str, Mapping[str, str]]

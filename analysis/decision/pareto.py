@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from analysis.costs.cost import Costs
 from analysis.costs.savings import cost_draws
 from analysis.estimates.realism import Realism
-from analysis.wording import listed, percent
+from analysis.words.wording import listed, percent
 
 Floats = NDArray[np.float64]
 _CENTRAL: Final = (0.025, 0.975)

@@ -22,7 +22,7 @@ from analysis.decision.effects import Levels
 from analysis.decision.margins import Margins
 from analysis.decision.size_limits import QUESTIONS, Verdicts, size_limits
 from analysis.tables.columns import EFFECTS, STANDARD_LODS
-from analysis.wording import percent
+from analysis.words.wording import percent
 
 SCHEMA: Final = 1
 HYSTERESIS, BAND = 0.1, 0.25  # as in the policy that comes with the renderer

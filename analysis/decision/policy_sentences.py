@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from analysis.costs.cost import Costs
 from analysis.decision.policy import Policy, PolicyStep
-from analysis.wording import listed, milliseconds, number
+from analysis.words.wording import listed, milliseconds, number
 
 
 def policy_answer(policy: Policy, costs: Costs | None = None) -> str:

@@ -7,7 +7,7 @@ import math
 from analysis.costs.cost import Costs
 from analysis.costs.savings import Saving, lod_saving
 from analysis.decision.verdicts import DIFFERENT, Decision, Verdict
-from analysis.wording import listed, milliseconds, number, percent
+from analysis.words.wording import listed, milliseconds, number, percent
 
 
 def answer(decision: Decision, costs: Costs | None = None) -> str:

@@ -14,10 +14,10 @@ from analysis.decision.effects import levels_of
 from analysis.decision.margins import Margins
 from analysis.decision.policy import Policy, policy_of, with_curves
 from analysis.decision.verdicts import EQUIVALENT, Decision
-from analysis.descriptive import answered
+from analysis.descriptive.means import answered
 from analysis.tables.ordering import lod_ranks
 from analysis.tables.reading import Tables
-from analysis.versions import own_version
+from analysis.words.versions import own_version
 
 
 def policy_for(

@@ -12,7 +12,7 @@ from analysis.costs.cost import Costs
 from analysis.costs.savings import lod_saving, saving_columns
 from analysis.decision.effects import EffectVerdict, saving_of
 from analysis.decision.verdicts import Decision, Test
-from analysis.multiplicity import holm
+from analysis.estimates.multiplicity import holm
 
 COLUMNS: Final = (
     *("distance", "lod", "best", "change", "verdict"),

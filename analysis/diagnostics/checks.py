@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.stats import kstest, norm
 
 from analysis.diagnostics.predicted import HIGHEST, LOWEST, Predicted
-from analysis.multiplicity import holm
+from analysis.estimates.multiplicity import holm
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.intp]

@@ -17,7 +17,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.stats import t
 
-from analysis.multiplicity import holm
+from analysis.estimates.multiplicity import holm
 
 Floats = NDArray[np.float64]
 Booleans = NDArray[np.bool_]

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from analysis.descriptive import answered
+from analysis.descriptive.means import answered
 from analysis.estimates.stimuli import Cell
 from analysis.tables.ordering import distance_order, lod_ranks
-from analysis.wording import listed
+from analysis.words.wording import listed
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from analysis.estimates.realism import Realism
-from analysis.wording import listed
+from analysis.words.wording import listed
 
 _MOST_NAMED: Final = 4
 

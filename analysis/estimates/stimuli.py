@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.descriptive import answered
+from analysis.descriptive.means import answered
 from analysis.models.counts import Counts, count_answers
 from analysis.models.predictors import Contrasted, Linear, Predictor
 from analysis.tables.ordering import distance_order, lod_order

@@ -11,10 +11,10 @@ import numpy as np
 import pandas as pd
 
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT, NOT_SHOWN
+from analysis.descriptive.shares import wilson
 from analysis.power.assumed import Cell, best_lods
 from analysis.power.concluding import Reason, reasons, sequence_of
 from analysis.power.replicates import Scene, Studied
-from analysis.shares import wilson
 
 OUTCOMES: Final = {EQUIVALENT: "equivalent", DIFFERENT: "different", NOT_SHOWN: "not_shown"}
 RIGHT, TOO_CHEAP, TOO_DEAR = "right", "too_cheap", "too_dear"

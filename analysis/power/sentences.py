@@ -10,7 +10,7 @@ from analysis.power.needed import POWER, Needed, needed_people
 from analysis.power.outcome import Outcome
 from analysis.power.replicates import Scene
 from analysis.power.text_table import Row, as_records, by_people
-from analysis.wording import listed, percent
+from analysis.words.wording import listed, percent
 
 
 def opening_lines(scene: Scene, outcome: Outcome, study: str) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.power.outcome import Outcome
-from analysis.wording import number, percent
+from analysis.words.wording import number, percent
 
 Row = Mapping[str, Any]
 

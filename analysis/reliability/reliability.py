@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from analysis.descriptive import t_interval
+from analysis.descriptive.means import t_interval
 from analysis.reliability.intraclass import Coefficient, intraclass
 from analysis.reliability.ordinal_alpha import krippendorff
 from analysis.screening.annex_e import bias_and_inconsistency

@@ -13,11 +13,11 @@ from typing import Final
 import pandas as pd
 
 from analysis.costs.cost import Costs
-from analysis.descriptive import differences_from_best, mean_ratings
-from analysis.shares import pair_notice_shares
+from analysis.descriptive.means import differences_from_best, mean_ratings
+from analysis.descriptive.shares import pair_notice_shares
 from analysis.tables.ordering import distance_order
 from analysis.tables.reading import Tables
-from analysis.wording import interval, listed, milliseconds, number, people, percent
+from analysis.words.wording import interval, listed, milliseconds, number, people, percent
 
 # Where a loss of half the scale is not ruled out, "not shown to be lower" would mislead.
 _WORST_RISK: Final = 0.5

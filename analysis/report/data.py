@@ -7,8 +7,8 @@ import pandas as pd
 from analysis.audit import Audit
 from analysis.correlation import person_concordance
 from analysis.costs.cost import Costs
-from analysis.descriptive import differences_from_best, mean_ratings
-from analysis.quality import missing_answers, people_overview
+from analysis.descriptive.means import differences_from_best, mean_ratings
+from analysis.descriptive.quality import missing_answers, people_overview
 from analysis.report.answer import Finding
 from analysis.tables.reading import Tables
 

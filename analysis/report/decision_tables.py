@@ -11,9 +11,9 @@ import pandas as pd
 
 from analysis.curves.curve import SizeCurve, Threshold
 from analysis.decision.verdict_tables import effect_table
-from analysis.inference import Inference
+from analysis.inference.inferring import Inference
 from analysis.report.tables import ReportTable
-from analysis.wording import interval, number, percent
+from analysis.words.wording import interval, number, percent
 
 _QUESTIONS = {"noticed": "noticed", "preferred": "best LoD preferred", "rated": "rated lower"}
 _LEVELS = {

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pandas as pd
 
-from analysis.deciding import rng_of
 from analysis.decision.margins import Margins
 from analysis.diagnostics.checks import end_counts, fit_checks, misfits
 from analysis.diagnostics.odds import SCALE, odds_of
@@ -13,7 +12,8 @@ from analysis.diagnostics.residuals import quantile_residuals
 from analysis.diagnostics.rivals import METRIC, rivals
 from analysis.estimates.groups import NOT_ASKED, QUESTIONS, group_effects
 from analysis.estimates.realism import Realism
-from analysis.inference import Inference
+from analysis.inference.deciding import rng_of
+from analysis.inference.inferring import Inference
 from analysis.power.detectable import detectable
 from analysis.report.diagnostic_tables import (
     checks_table,
@@ -25,7 +25,7 @@ from analysis.report.diagnostic_tables import (
 )
 from analysis.report.sections import Section
 from analysis.tables.reading import Tables
-from analysis.wording import listed, number
+from analysis.words.wording import listed, number
 
 FIT, RIVALS = "Does the model fit?", "Model comparison"
 GROUPS, COULD_SHOW = "Groups of people", "What this study could have shown"

@@ -13,7 +13,7 @@ from analysis.diagnostics.rivals import METRIC
 from analysis.estimates.groups import FEWEST, OUTCOMES, QUESTIONS
 from analysis.power.needed import POWER
 from analysis.report.tables import ReportTable
-from analysis.wording import interval, number, percent
+from analysis.words.wording import interval, number, percent
 
 _NONE: Final = "–"
 

@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 
 from analysis.decision.verdicts import Verdict
-from analysis.inference import Inference
+from analysis.inference.inferring import Inference
 from analysis.report.tables import ReportTable
-from analysis.wording import interval, number, percent
+from analysis.words.wording import interval, number, percent
 
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:

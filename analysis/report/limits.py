@@ -13,10 +13,10 @@ import pandas as pd
 from analysis.audit import Audit
 from analysis.decision.margins import DECLARED, Margins
 from analysis.decision.verdicts import EQUIVALENT, NOT_SHOWN, Verdict
-from analysis.descriptive import answered, differences_from_best
-from analysis.inference import Inference
+from analysis.descriptive.means import answered, differences_from_best
+from analysis.inference.inferring import Inference
 from analysis.tables.reading import Tables
-from analysis.wording import listed, number, percent
+from analysis.words.wording import listed, number, percent
 
 # ITU-R BT.500-15 (2023) asks for at least 15 observers.
 _ENOUGH_PEOPLE: Final = 15

@@ -9,10 +9,10 @@ from importlib.metadata import version
 import pandas as pd
 
 from analysis.costs.cost import Costs
-from analysis.descriptive import answered
-from analysis.inference import SEED
+from analysis.descriptive.means import answered
+from analysis.inference.deciding import SEED
 from analysis.tables.reading import Tables
-from analysis.versions import own_version
+from analysis.words.versions import own_version
 
 _PACKAGES = ("numpy", "scipy", "pandas", "matplotlib")
 

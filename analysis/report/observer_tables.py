@@ -10,7 +10,7 @@ import pandas as pd
 
 from analysis.report.tables import ReportTable
 from analysis.screening.flags import FLAGS, typical_slope
-from analysis.wording import interval, number, people, percent
+from analysis.words.wording import interval, number, people, percent
 
 _MOST: Final = 60
 _CLEAR: Final = math.log(1000.0)

@@ -15,7 +15,7 @@ from analysis.charts import CHARTS
 from analysis.charts.style import SIMULATED
 from analysis.costs.cost import Costs
 from analysis.decision.pareto import pareto_sentences
-from analysis.inference import Inference
+from analysis.inference.inferring import Inference
 from analysis.report.decision_tables import (
     effects_table,
     joint_table,

@@ -18,9 +18,9 @@ from analysis.decision.effect_sentences import effect_answers
 from analysis.decision.margins import Margins
 from analysis.decision.policy_sentences import policy_answer
 from analysis.decision.sentences import answer
-from analysis.descriptive import answered
-from analysis.inference import infer
-from analysis.quality import quality_statements
+from analysis.descriptive.means import answered
+from analysis.descriptive.quality import quality_statements
+from analysis.inference.inferring import infer
 from analysis.report.answer import Finding, findings
 from analysis.report.data import csv_bytes, further_tables
 from analysis.report.diagnostic_sections import (

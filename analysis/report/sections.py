@@ -11,8 +11,8 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
-from analysis.deciding import decisions_of
-from analysis.inference import SEED, Inference
+from analysis.inference.deciding import SEED, decisions_of
+from analysis.inference.inferring import Inference
 from analysis.reliability.reliability import person_taus, reliability
 from analysis.report.observer_tables import (
     flag_sentences,

@@ -11,12 +11,12 @@ import pandas as pd
 from analysis.audit import Audit
 from analysis.correlation import ALL_DISTANCES, rank_correlations
 from analysis.costs.cost import Costs
-from analysis.descriptive import differences_from_best, mean_ratings
-from analysis.quality import missing_answers, people_overview
-from analysis.shares import PAIR_OUTCOMES, pair_comparison_shares, pair_notice_shares
+from analysis.descriptive.means import differences_from_best, mean_ratings
+from analysis.descriptive.quality import missing_answers, people_overview
+from analysis.descriptive.shares import PAIR_OUTCOMES, pair_comparison_shares, pair_notice_shares
 from analysis.tables.columns import NOTICED
 from analysis.tables.reading import Tables
-from analysis.wording import interval, milliseconds, number, percent
+from analysis.words.wording import interval, milliseconds, number, percent
 
 _MOST_PEOPLE: Final = 60
 

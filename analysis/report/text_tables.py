@@ -7,7 +7,7 @@ from typing import Final
 import pandas as pd
 
 from analysis.report.tables import ReportTable
-from analysis.wording import percent
+from analysis.words.wording import percent
 from analysis.writing.code_book import CODES
 from analysis.writing.coding import ALL, BY_HAND
 

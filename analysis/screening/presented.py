@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from analysis.descriptive import answered
+from analysis.descriptive.means import answered
 
 Floats = NDArray[np.float64]
 Places = NDArray[np.intp]

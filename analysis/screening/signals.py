@@ -7,12 +7,12 @@ from typing import Final
 import numpy as np
 import pandas as pd
 
+from analysis.descriptive.shares import wilson
 from analysis.screening.annex_e import bias_and_inconsistency
 from analysis.screening.bt500 import is_rejected
 from analysis.screening.evidence import evidence_of
 from analysis.screening.following import following
 from analysis.screening.presented import Presented, presented, sums
-from analysis.shares import wilson
 from analysis.tables.ordering import lod_ranks
 from analysis.tables.reading import Tables
 

@@ -13,10 +13,10 @@ import numpy as np
 import pandas as pd
 
 from analysis.correlation import ALL_DISTANCES, rank_correlations
-from analysis.descriptive import answered, person_means, t_interval
-from analysis.shares import paired, wilson
+from analysis.descriptive.means import answered, person_means, t_interval
+from analysis.descriptive.shares import paired, wilson
 from analysis.tables.reading import Tables
-from analysis.wording import interval, number, people, percent
+from analysis.words.wording import interval, number, people, percent
 
 POINTS, SHARE, TAU = "points", "share of people", "τ-b"
 Pairs = Sequence[tuple[str, str]]

@@ -13,7 +13,7 @@ from typing import Final
 
 import pandas as pd
 
-from analysis.shares import paired, wilson
+from analysis.descriptive.shares import paired, wilson
 from analysis.tables.ordering import in_order
 from analysis.tables.parsing import TableError
 from analysis.writing.code_book import CODE_NAMES, codes_in

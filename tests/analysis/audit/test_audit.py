@@ -1,7 +1,7 @@
 """The design audit: what was shown, what is linked, and what cannot be concluded."""
 
 from analysis.audit import ShownClip, audit_design, shown_clips
-from analysis.inference import infer
+from analysis.inference.inferring import infer
 from analysis.report.limits import limits
 from analysis.tables.reading import Tables, tables_from
 

@@ -20,7 +20,7 @@ from analysis.decision.effects import (
 from analysis.decision.margins import Margins
 from analysis.decision.verdict_tables import effect_table
 from analysis.decision.verdicts import DIFFERENT, EQUIVALENT, NOT_SHOWN
-from analysis.multiplicity import holm
+from analysis.estimates.multiplicity import holm
 from analysis.tables.columns import EFFECTS
 
 RANKS = {"low": 0.0, "ultra": 3.0, "no-caustics": -1.0, "dull": -1.0}

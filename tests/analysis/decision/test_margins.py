@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from analysis.decision.margins import AT_ANALYSIS, DECLARED, DEFAULT, Margins, declared_margins
-from analysis.inference import infer
+from analysis.inference.inferring import infer
 from analysis.tables.reading import Tables
 
 BOOK = {"decision": {"realism_margin": 0.3, "noticed_margin": 0.2, "confidence": 0.9}}

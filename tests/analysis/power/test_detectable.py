@@ -9,15 +9,15 @@ import pandas as pd
 import pytest
 from scipy.stats import norm, t
 
-from analysis.deciding import fit_noticing, fit_realism
 from analysis.decision.margins import DEFAULT
 from analysis.decision.verdicts import EQUIVALENT
+from analysis.descriptive.shares import wilson
+from analysis.inference.deciding import fit_noticing, fit_realism
 from analysis.power.assumed import named_truth
 from analysis.power.detectable import COLUMNS, detectable, people_for, smallest_margin
 from analysis.power.plan import Plan
 from analysis.power.replicates import Scene, answers_of, simulate_studies
 from analysis.power.tables import as_tables
-from analysis.shares import wilson
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.population import POPULATION
 from analysis.tables.reading import Tables

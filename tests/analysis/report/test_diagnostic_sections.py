@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from analysis.decision.margins import DEFAULT
-from analysis.inference import Inference, infer
+from analysis.inference.inferring import Inference, infer
 from analysis.report.diagnostic_sections import (
     detectable_section,
     fit_section,

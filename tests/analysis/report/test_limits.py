@@ -8,7 +8,7 @@ from analysis.audit import Audit, audit_design, shown_clips
 from analysis.decision import verdicts as words
 from analysis.decision.margins import Margins
 from analysis.decision.verdicts import Decision, Verdict
-from analysis.inference import Inference, infer
+from analysis.inference.inferring import Inference, infer
 from analysis.report.limits import limits
 from analysis.tables.reading import Tables
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from analysis.deciding import decisions_of
 from analysis.decision import verdicts
 from analysis.decision.verdicts import Decision, Verdict
+from analysis.inference.deciding import decisions_of
 from analysis.screening.flags import flags_of
 from analysis.screening.sensitivity import (
     NOBODY_FLAGGED,

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis.descriptive import mean_ratings
+from analysis.descriptive.means import mean_ratings
 from analysis.tables.reading import Tables, tables_from
 from analysis.thesis.claims import COLUMNS, claims_table
 from analysis.thesis.findings import CLAIMS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from analysis.wording import number, percent
+from analysis.words.wording import number, percent
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 from scipy.special import ndtri
 
-from analysis.descriptive import CONFIDENCE
+from analysis.descriptive.means import CONFIDENCE
 from analysis.tables.columns import NOTICED, STANDARD_LODS
 from analysis.tables.ordering import in_order
 

@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 
 from analysis.costs.cost import COLUMNS, Costs
-from analysis.deciding import decisions_of
 from analysis.decision.sentences import answer
 from analysis.decision.verdicts import NOT_SHOWN, Margins
-from analysis.inference import infer
+from analysis.inference.deciding import decisions_of
+from analysis.inference.inferring import infer
 from analysis.report.inference_tables import inference_tables
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.population import POPULATION

@@ -9,7 +9,7 @@ import numpy as np
 
 from analysis.decision.margins import Margins
 from analysis.decision.verdicts import Decision, decide
-from analysis.descriptive import answered
+from analysis.descriptive.means import answered
 from analysis.estimates.noticing import Noticing, noticing_of
 from analysis.estimates.realism import Realism, realism_of
 from analysis.tables.ordering import lod_ranks

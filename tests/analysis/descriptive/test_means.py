@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from analysis.descriptive import (
+from analysis.descriptive.means import (
     differences_from_best,
     mean_ratings,
     person_means,

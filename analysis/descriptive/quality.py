@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from analysis.tables.reading import Tables
-from analysis.wording import percent
+from analysis.words.wording import percent
 
 _QUESTIONS: Final = (
     ("ratings", "rating", "realism of each eye"),

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from analysis.shares import (
+from analysis.descriptive.shares import (
     comparison_shares,
     notice_shares,
     pair_comparison_shares,

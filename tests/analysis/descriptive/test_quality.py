@@ -3,7 +3,7 @@
 import pandas as pd
 import pytest
 
-from analysis.quality import missing_answers, people_overview, quality_statements
+from analysis.descriptive.quality import missing_answers, people_overview, quality_statements
 from analysis.tables.reading import Tables, tables_from
 
 

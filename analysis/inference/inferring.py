@@ -10,15 +10,6 @@ import pandas as pd
 from analysis.costs.cost import Costs
 from analysis.curves.along_sizes import NO_CURVES, Curves, curves_of
 from analysis.curves.curve import curve_table, point_table, threshold_table
-from analysis.deciding import (
-    SEED,
-    count_people,
-    decide_by,
-    experts_of,
-    fit_noticing,
-    fit_realism,
-    rng_of,
-)
 from analysis.decision.effects import EffectVerdict, decide_effects, levels_of
 from analysis.decision.margins import Margins
 from analysis.decision.pareto import ParetoPoint, pareto, pareto_table
@@ -33,10 +24,16 @@ from analysis.estimates.person_effects import person_effects
 from analysis.estimates.preference import Preference, preference_of
 from analysis.estimates.realism import Realism
 from analysis.estimates.separation import separation_warnings
+from analysis.inference.deciding import (
+    count_people,
+    decide_by,
+    experts_of,
+    fit_noticing,
+    fit_realism,
+    rng_of,
+)
 from analysis.tables.ordering import lod_ranks
 from analysis.tables.reading import Tables
-
-__all__ = ["SEED", "Inference", "infer"]
 
 
 @dataclass(frozen=True)

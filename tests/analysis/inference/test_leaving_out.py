@@ -6,10 +6,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from analysis import leaving_out
-from analysis.deciding import decisions_of
-from analysis.inference import Inference, infer
-from analysis.leaving_out import COLUMNS, verdicts_without_each
+from analysis.inference import leaving_out
+from analysis.inference.deciding import decisions_of
+from analysis.inference.inferring import Inference, infer
+from analysis.inference.leaving_out import COLUMNS, verdicts_without_each
 from analysis.screening.sensitivity import without
 from analysis.tables.reading import Tables
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from statsmodels.stats.multitest import multipletests
 
-from analysis.multiplicity import holm
+from analysis.estimates.multiplicity import holm
 
 
 @pytest.mark.parametrize("seed", range(5))

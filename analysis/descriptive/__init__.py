@@ -1,0 +1,1 @@
+"""Descriptive statistics: means, shares and what the data is worth, before any model."""

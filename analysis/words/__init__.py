@@ -1,0 +1,1 @@
+"""Numbers, lists and our version as results write them: every room may use these."""
