@@ -13,8 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from study.commands.options import add_study, count, reading
-from study.commands.places import new_folder
+from study.commands.power_options import add_arguments
 
 if TYPE_CHECKING:
     from tqdm import tqdm
@@ -24,6 +23,8 @@ if TYPE_CHECKING:
     from analysis.power.plan import Plan
     from analysis.power.replicates import Scene, Studied
     from study.design.definition import StudyDefinition
+
+__all__ = ["DESCRIPTION", "EXAMPLE", "HELP", "add_arguments", "run"]
 
 HELP = "tell how many people a study needs"
 DESCRIPTION = (
@@ -35,94 +36,6 @@ DESCRIPTION = (
 EXAMPLE = "lod --participants 20,40"
 WIDTH: Final = 96
 PLANS: Final = 4  # ways in which people come, taken in turns by the replicates
-
-
-@reading
-def people(text: str) -> tuple[int, ...]:
-    """Read ``10,20,40``: numbers of participants, at least 2 each."""
-    words = [word.strip() for word in text.split(",")]
-    if not all(word.isdecimal() and 2 <= int(word) <= 5000 for word in words):
-        raise ValueError(f'"{text}": write whole numbers from 2 to 5000, like 10,20,40')
-    return tuple(sorted({int(word) for word in words}))
-
-
-@reading
-def share(text: str) -> float:
-    """Read a share below 1."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0.0 <= value < 1.0:
-        raise ValueError(f'"{text}" is no share; write a number from 0 to below 1, like 0.1')
-    return value
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add this command's arguments."""
-    add_study(parser)
-    parser.add_argument(
-        "--participants",
-        type=people,
-        default=(10, 20, 40, 80),
-        metavar="N,N,...",
-        help="numbers of people, apart by commas (default: 10,20,40,80)",
-    )
-    parser.add_argument(
-        "--replicates",
-        type=count,
-        default=400,
-        metavar="N",
-        help="simulated studies of each number of people (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--truth",
-        default="thesis",
-        metavar="NAME|FILE.toml",
-        help="what people are assumed to see: thesis (as the thesis says in words), equal (no LoD "
-        "differs), realism-margin or noticed-margin (every LoD just at a margin, where enough "
-        "would be wrong), or a file with losses and shares (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--dropout",
-        type=share,
-        default=0.0,
-        metavar="SHARE",
-        help="share of people who leave before the end; what they answered counts "
-        "(default: %(default)s)",
-    )
-    for name, metavar, meaning, default in (
-        ("realism-margin", "POINTS", "a loss of realism that does not matter", "0.5"),
-        ("noticed-margin", "SHARE", "share of people, beyond false alarms, who may notice", "0.25"),
-        ("confidence", "SHARE", "confidence of each bound, one-sided", "0.95"),
-    ):
-        parser.add_argument(
-            f"--{name}",
-            type=float,
-            metavar=metavar,
-            help=f"{meaning} (default: what the study declares, else {default})",
-        )
-    parser.add_argument(
-        "--seed",
-        type=int,
-        default=1,
-        help="the same seed gives the same result, however many jobs (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--jobs",
-        type=count,
-        default=os.cpu_count() or 1,
-        metavar="N",
-        help="processes that work at once (default: one for each processor, here %(default)s)",
-    )
-    parser.add_argument(
-        "--out",
-        type=new_folder,
-        default="out/power",
-        metavar="DIR",
-        help="folder for power.csv, power-cheapest.csv, power.json and the chart "
-        "(default: %(default)s)",
-    )
 
 
 def run(options: argparse.Namespace) -> int:
