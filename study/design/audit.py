@@ -5,22 +5,19 @@ The facts about pairings come from ``analysis.audit``, which says the same in th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from math import ceil
 from typing import Final
 
 from analysis import Margins
 from analysis.audit import Audit, ShownClip, audit_design
-from renderer.camera import iris_px, iris_px_of_frame
-from renderer.detail import EFFECTS
 from study.design.definition import StudyDefinition
 from study.design.duration import minutes, visit_parts
 from study.design.pairings import Clip
-from study.design.parts import Size
 from study.design.questions import each_asked
 from study.design.schedule import order_rows
-from study.design.visibility import hidden_effects
+from study.design.unseen import unseen_differences
 
 LONG_MIN: Final = 30.0  # BT.500 ends a sitting here
 
@@ -119,7 +116,7 @@ def _rule(definition: StudyDefinition) -> Iterator[str]:
 
 def warnings(definition: StudyDefinition) -> list[str]:
     """Return what may be meant, but is worth a second look, most general first."""
-    return [*_general(definition), *_hidden(definition)]
+    return [*_general(definition), *unseen_differences(definition)]
 
 
 def _general(definition: StudyDefinition) -> Iterator[str]:
@@ -165,45 +162,3 @@ def _general(definition: StudyDefinition) -> Iterator[str]:
     for lod in definition.lods:
         if lod not in used | bases:
             yield f"lods.{lod}: no clip shows it"
-
-
-def _hidden(definition: StudyDefinition) -> Iterator[str]:
-    """Warn of effects whose difference is smaller than a pixel, clip by clip."""
-    for alike in _both_ways(definition):
-        clip = alike[0]
-        one, other = definition.detail(clip.left), definition.detail(clip.right)
-        differing = [e for e in EFFECTS if getattr(one, e) != getattr(other, e)]
-        for size in definition.sizes:
-            diameter = largest_iris_px(definition, clip, size)
-            hidden = hidden_effects(one, other, diameter)
-            if not hidden:
-                continue
-            listed = ", ".join(f"{e} (from {s.iris_px:g} px)" for e, s in hidden.items())
-            line = (
-                f"{_named(alike)} ({clip.distance}, {clip.left} | {clip.right}) at {size}: the "
-                f"iris is {diameter:.0f} px wide; differences smaller than a pixel: {listed}"
-            )
-            yield line + ("; nothing else differs" if set(differing) == set(hidden) else "")
-
-
-def _both_ways(definition: StudyDefinition) -> list[list[Clip]]:
-    """Return the pairings, those that differ in their sides alone together."""
-    alike: dict[tuple[object, ...], list[Clip]] = {}
-    for clip in _pairings(definition):
-        key = (clip.distance, frozenset((clip.left, clip.right)), clip.motion)
-        alike.setdefault(key, []).append(clip)
-    return list(alike.values())
-
-
-def _named(clips: Sequence[Clip]) -> str:
-    names = [clip.pairing for clip in clips]
-    return f"clip{'s' if len(names) > 1 else ''} {' and '.join(names)}"
-
-
-def largest_iris_px(definition: StudyDefinition, clip: Clip, size: Size) -> float:
-    """Return the iris's largest diameter in a clip, in pixels."""
-    spec = definition.clip_spec(clip, size=size, orbit_direction=definition.orbit.directions[0])
-    if spec.motion == "orbit":
-        return max(iris_px(spec, 0.0))  # facing the camera
-    ends = (iris_px_of_frame(spec, frame) for frame in (0, spec.frame_count - 1))
-    return max(map(max, ends))

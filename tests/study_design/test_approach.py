@@ -10,11 +10,12 @@ import pytest
 
 from renderer.detail import EFFECTS, Detail
 from renderer.lod.policy import default_policy
-from study.design.audit import largest_iris_px, warnings
+from study.design.audit import warnings
 from study.design.definition import StudyDefinition, parse_definition, read_definition
 from study.design.faults import DefinitionError
 from study.design.parts import read_size
 from study.design.pixels import median_iris_px
+from study.design.unseen import largest_iris_px
 
 SIZE = read_size("1280x720")
 
