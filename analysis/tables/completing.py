@@ -22,11 +22,40 @@ _KEYS: Final = {
 }
 
 
+def rank_faults(ratings: pd.DataFrame, source: str) -> list[str]:
+    """Return what is wrong with the LoDs' ranks: a LoD with two of them, or two LoDs with one.
+
+    The frame's index plus two is the row that a fault names.
+    """
+    own = ratings[["lod", "lod_rank"]].assign(lod_rank=_ranked(ratings)).dropna()
+    known = own.drop_duplicates("lod")
+    first = own["lod"].map(known.set_index("lod")["lod_rank"])
+    other = own[own["lod_rank"] != first].drop_duplicates("lod")
+    faults = [
+        f"{source}: row {row + 2}, lod_rank: found {rank} for {lod}, which has {first[row]} in an "
+        "earlier row; accepted: one rank for each LoD"
+        for row, lod, rank in zip(other.index, other["lod"], other["lod_rank"], strict=True)
+    ]
+    for rank, lods in known.groupby("lod_rank")["lod"]:
+        if len(lods) > 1:
+            faults.append(
+                f"{source}: row {lods.index[1] + 2}, lod_rank: found {rank} for "
+                f"{' and '.join(lods)}; accepted: a rank for one LoD alone, 1 for the least"
+            )
+    return faults
+
+
+def _ranked(ratings: pd.DataFrame) -> pd.Series:
+    """Return the LoDs' ranks, the standard ones' where the table has none."""
+    standard = ratings["lod"].map({lod: i + 1 for i, lod in enumerate(STANDARD_LODS)})
+    ranks: pd.Series = ratings["lod_rank"].fillna(standard.astype("Int64"))
+    return ranks
+
+
 def complete_ratings(ratings: pd.DataFrame, participants: pd.DataFrame) -> pd.DataFrame:
     """Fill in what follows from other columns: rank, clip, distance, catch, practice, simulated."""
     table = _complete(ratings, participants)
-    rank = table["lod"].map({lod: i + 1 for i, lod in enumerate(STANDARD_LODS)}).astype("Int64")
-    table["lod_rank"] = table["lod_rank"].fillna(rank)
+    table["lod_rank"] = _ranked(table)
     is_same = (table["lod"] == table["other_lod"]).fillna(False).astype(bool)
     table["is_catch"] = table["is_catch"].fillna(is_same).astype(bool)
     beside = table["other_lod"].map(lambda lod: f" beside {lod}", na_action="ignore").fillna("")
@@ -52,9 +81,15 @@ def drop_repeated_rows(
 ) -> pd.DataFrame:
     """Keep one of rows that are equal in every cell; two answers to one question are a fault."""
     key = [column for column in _KEYS[name] if not table[column].isna().all()]
-    if table.empty or (name != "participants" and "trial" not in key):
-        return table
     is_equal = table.duplicated(keep="first")
+    if table.empty or (name != "participants" and "trial" not in key):
+        if is_equal.any():
+            notes.append(
+                f"{source}: {is_equal.sum()} of {len(table)} rows are like an earlier one in every "
+                "cell. Without a column trial each counts as an answer of its own; if the table "
+                "was put together twice, leave them out."
+            )
+        return table
     kept = table[~is_equal]
     if is_equal.any():
         rows = "row was" if is_equal.sum() == 1 else "rows were"

@@ -19,7 +19,10 @@ import pandas as pd
 
 FIRST_ROW: Final = 2
 _SEPARATORS: Final = ",;\t"
+_BLANK: Final = f"{_SEPARATORS} \r\n"
 _UTF16: Final = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+_ZIP: Final = b"PK\x03\x04"  # what .xlsx and .ods begin with
+_SAVING: Final = 'in a spreadsheet, save as "CSV UTF-8"'
 _MISSING: Final = "NA"  # what R writes for a missing cell
 _LONGEST_CELL: Final = 10_000_000
 
@@ -49,9 +52,10 @@ def read_csv_text(path: Path, name: str, known: Collection[str]) -> CsvText:
     separator, text = _separator(text, known)
     found.has_decimal_commas = separator != ","
     rows = _rows(text, separator, name, found.faults)
-    header = _header(rows[0] if rows else [], known, name, found.notes)
+    start = next((number for number, row in enumerate(rows) if any(row)), 0)
+    header = _header(rows[start] if rows else [], known, name, found.notes)
     kept: dict[int, list[str]] = {}
-    for number, row in enumerate(rows[1:]):
+    for number, row in enumerate(rows[start + 1 :], start=start):
         own, more = row[: len(header)], row[len(header) :]
         if not any(row):
             continue  # nothing is in it
@@ -75,18 +79,25 @@ def read_csv_text(path: Path, name: str, known: Collection[str]) -> CsvText:
 
 
 def _decoded(content: bytes, name: str, faults: list[str]) -> str | None:
+    if content.startswith(_ZIP):
+        faults.append(f"{name}: a spreadsheet's own file; accepted: CSV text ({_SAVING})")
+        return None
     is_wide = content.startswith(_UTF16)
     encoding, called = ("utf-16", "UTF-16") if is_wide else ("utf-8-sig", "UTF-8")
     try:
-        return content.decode(encoding)
+        text = content.decode(encoding)
+        wrong = text.find("\0")
+        row, found, called = text[: max(wrong, 0)].count("\n") + 1, 0, "text"
     except UnicodeDecodeError as error:
-        row = content[: error.start].count(b"\n") + 1
-        faults.append(
-            f"{name}: row {row}: byte {content[error.start]:#04x} is not {called}; "
-            "accepted: CSV text in UTF-8, or in UTF-16 with a byte order mark (in a spreadsheet, "
-            'save as "CSV UTF-8")'
-        )
-        return None
+        text, wrong = "", error.start
+        row, found = content[:wrong].count(b"\n") + 1, content[wrong]
+    if wrong < 0:
+        return text
+    faults.append(
+        f"{name}: row {row}: byte {found:#04x} is not {called}; accepted: CSV text in UTF-8, "
+        f"or in UTF-16 with a byte order mark ({_SAVING})"
+    )
+    return None
 
 
 def _separator(text: str, known: Collection[str]) -> tuple[str, str]:
@@ -94,7 +105,8 @@ def _separator(text: str, known: Collection[str]) -> tuple[str, str]:
     told = re.match(r"\ufeff?sep=(.)\r?\n?", text)
     if told and told[1] in _SEPARATORS:
         return told[1], text[told.end() :]
-    first = next(iter(io.StringIO(text, newline="")), "")
+    lines = io.StringIO(text, newline="")
+    first = next((line for line in lines if line.strip(_BLANK)), "")
 
     def fit(separator: str) -> tuple[int, int]:
         names = next(csv.reader([first], delimiter=separator), [])

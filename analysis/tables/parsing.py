@@ -18,6 +18,7 @@ from analysis.tables.column import Column
 _FIRST_ROW: Final = 2
 _SHOWN_FAULTS: Final = 50
 _DECIMAL_COMMA: Final = re.compile(r"^([+-]?\d+),(\d+)$")
+_MOST_WHOLE: Final = 2.0**53  # beyond it two whole numbers may be read as one
 _TRUTH: Final = {"true": True, "false": False, "1": True, "0": False}
 
 
@@ -100,6 +101,7 @@ def _parse_number(text: pd.Series, column: Column) -> tuple[pd.Series, np.ndarra
     is_readable = np.isfinite(values)
     if column.kind == "integer":
         is_readable &= values == np.floor(np.where(is_readable, values, 0.5))
+        is_readable &= np.abs(np.where(is_readable, values, 0.0)) <= _MOST_WHOLE
     if column.low is not None:
         is_readable &= np.where(is_readable, values, -np.inf) >= column.low
     if column.high is not None:
@@ -146,6 +148,7 @@ def _accepted(column: Column) -> str:
         low, high = (None if v is None else f"{v:g}" for v in (column.low, column.high))
         if low is not None and high is not None:
             return f"a {name} from {low} to {high}{empty}"
-        return f"a {name}{'' if low is None else f' of at least {low}'}{empty}"
+        few = " of at most 15 digits" if column.kind == "integer" else ""
+        return f"a {name}{few}{'' if low is None else f' from {low} on'}{empty}"
     known = {"boolean": "true or false", "time": "a time like 2026-01-31T09:30:00+00:00"}
     return known.get(column.kind, "some text") + empty

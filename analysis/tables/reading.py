@@ -17,7 +17,12 @@ import pandas as pd
 from analysis.decision.margins import DEFAULT, Margins, declared_margins
 from analysis.tables.codebook import accepted_in, columns_of
 from analysis.tables.columns import COLUMNS, SCALE
-from analysis.tables.completing import complete_comparisons, complete_ratings, drop_repeated_rows
+from analysis.tables.completing import (
+    complete_comparisons,
+    complete_ratings,
+    drop_repeated_rows,
+    rank_faults,
+)
 from analysis.tables.csv_text import CsvText, read_csv_text
 from analysis.tables.parsing import TableError, check_header, parse_table
 
@@ -91,6 +96,7 @@ def tables_from(
             raw, columns, source=name, decimal_commas=loaded.has_decimal_commas
         )
         faults += cell_faults
+        faults += rank_faults(typed, name) if table == "ratings" else []
         notes += _unknown_columns(raw, {c.name for c in columns}, name)
         parsed[table] = drop_repeated_rows(typed, table, name, faults=faults, notes=notes)
     if faults:

@@ -51,6 +51,7 @@ def read(tmp_path: Path, content: bytes) -> Tables:
         csv_of("\t", comma=True, end="\r\n").encode("utf-16"),  # Excel's "Unicode text"
         csv_of("\t").encode("utf-16-be").join([b"\xfe\xff", b""]),
         ("sep=;\r\n" + csv_of(";", comma=True, end="\r\n")).encode("utf-8-sig"),
+        ("\n ,\n\n" + csv_of()).encode(),
         (csv_of() + ",,,,\n\n,,,,\n").encode(),  # rows that were cleared, not deleted
         csv_of().replace("\n", ",\n").replace("first line,", "first line").encode(),
         csv_of().rstrip("\n").encode(),
@@ -59,7 +60,7 @@ def read(tmp_path: Path, content: bytes) -> Tables:
     ],
     ids=[
         *("plain", "bom", "windows", "semicolon", "german", "excel-unicode", "utf16-be", "sep"),
-        *("blank-rows", "trailing-separator", "no-last-end", "capitals", "NA"),
+        *("blank-first", "blank-rows", "trailing-separator", "no-last-end", "capitals", "NA"),
     ],
 )
 def test_the_same_ratings_come_out(tmp_path: Path, content: bytes) -> None:
@@ -106,6 +107,12 @@ TWICE = "participant,lod,rating\n"
         (TWICE + ",low,3\n", 'row 2, participant: found ""; accepted some text'),
         ("participant,lod,score\na,low,3\n", 'row 1: column "rating" is missing; found'),
         ("", "row 1: column"),
+        ("\n\n" + TWICE + "a,low,6\n", 'row 4, rating: found "6"'),
+        (TWICE + "a,l\0w,3\n", "row 2: byte 0x00 is not text; accepted: CSV text in UTF-8, or in"),
+        (
+            "PK\x03\x04" + TWICE,
+            "a spreadsheet's own file; accepted: CSV text (in a spreadsheet, sa",
+        ),
         ("participant,lod,rating,rating\na,low,3,4\n", 'row 1: column "rating" occurs 2 times'),
     ],
 )

@@ -56,6 +56,24 @@ def test_rows_are_counted_past_blank_lines(tmp_path: Path) -> None:
     assert faults_of(path)[0].startswith("ratings.csv: row 5, rating")
 
 
+def test_a_number_that_no_computer_counts_to_is_refused(tmp_path: Path) -> None:
+    text = f"participant,lod,rating,response_ms\nA,low,2,{2**53}\nA,high,2,{10**25}\n"
+    assert faults_of(write(tmp_path, text)) == (
+        f'ratings.csv: row 3, response_ms: found "{10**25}"; accepted a whole number of at most 15 '
+        "digits from 0 on or empty",
+    )
+
+
+def test_a_lod_has_one_rank_and_shares_it_with_none(tmp_path: Path) -> None:
+    text = "participant,lod,lod_rank,rating\nA,matt,1,2\nA,gloss,2,2\nA,matt,2,3\nA,low,,3\n"
+    assert faults_of(write(tmp_path, text)) == (
+        "ratings.csv: row 4, lod_rank: found 2 for matt, which has 1 in an earlier row; accepted: "
+        "one rank for each LoD",
+        "ratings.csv: row 5, lod_rank: found 1 for matt and low; accepted: a rank for one LoD "
+        "alone, 1 for the least",
+    )
+
+
 def test_a_misspelt_column_is_recognised(tmp_path: Path) -> None:
     faults = faults_of(write(tmp_path, "participant,lod,ratng\nA,low,2\n"))
     assert faults == (
@@ -142,6 +160,16 @@ def test_two_answers_to_one_question_are_a_fault(tmp_path: Path) -> None:
     assert faults_of(write(tmp_path, text)) == (
         "ratings.csv: row 3: a second, different row for participant A, trial t1, eye left; "
         "accepted: one row each",
+    )
+
+
+def test_equal_rows_without_a_trial_count_and_are_told(tmp_path: Path) -> None:
+    text = "participant,lod,rating\n" + "A,low,2\nA,high,3\n" * 2
+    tables = read_source(write(tmp_path, text))
+    assert len(tables.ratings) == 4
+    (told,) = tables.notes
+    assert told.startswith(
+        "ratings.csv: 2 of 4 rows are like an earlier one in every cell. Without"
     )
 
 
