@@ -52,7 +52,7 @@ def test_clips_in_which_nothing_else_differs_come_first_and_say_so(raw: dict[str
     first, *others = unseen_differences(parse_definition(raw))
     assert first == (
         "tessellation: differences are smaller than a pixel below an iris of 200 px, as the "
-        "coarser mesh has 2000 triangles: ultra | smooth at far (8 and 12 px); nothing else "
+        "coarser mesh has 2000 triangles: ultra | smooth at far (2 and 4 px); nothing else "
         "differs there"
     )
     assert others
