@@ -1,8 +1,6 @@
-"""How an eye stands before the camera, from its two edges; and where its points lie in the picture.
+"""How a model eye stands before a camera, and where its points lie in the picture.
 
-A circle's shortening alone says little near 0 degrees and nothing of the side an eye turns to, and
-the limbus is no circle but 5 % lower than wide. So one model eye is fitted to both edges at once,
-seen through its own cornea, with the anatomy's spread as the prior of everything it leaves open.
+Its pupil is seen through its own cornea, and the limbus is no circle but 5 % lower than wide.
 Eye space in mm (see renderer.eye.anatomy); pictures with x to the right, y down.
 """
 
@@ -14,11 +12,9 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
-from scipy import optimize
 
-from renderer.eye.anatomy import CORNEA_IOR, LIMBUS_HEIGHT_RATIO, LIMBUS_Z_MM
+from renderer.eye.anatomy import CORNEA_IOR, LIMBUS_Z_MM
 from renderer.eye.optics import refract, surface_height, surface_normal, to_iris_plane, unit
-from renderer.unrefraction.edges import Edges
 from renderer.unrefraction.limbus import half_way_mm
 
 Array = npt.NDArray[np.float64]
@@ -26,21 +22,8 @@ Array = npt.NDArray[np.float64]
 RUFF_MM: Final = 0.005  # how far outside of the pupil's rim its dark lining begins to show
 LIMBUS_DEPTH_MM: Final = 0.035  # sclera shines from so far beneath the surface
 RIM_DEPTH_MM: Final = 0.075  # the rim lies so far behind the iris's mean surface, its plane
-MODEL_LIMBUS_MM: Final = 11.7  # the visible iris's width that the model eye stands for
 TELECENTRIC_MM: Final = 1e5  # far enough to be parallel
 CONTOUR: Final = 48
-
-# Spread of what the edges leave open, in the units of the parameters (see _Parameters).
-TILT_DEG: Final = 12.0  # people look into a camera that is asked to photograph their eye
-DECENTRE_MM: Final = 0.15
-HEIGHT_RATIO: Final = 0.015
-PUPIL_OVAL: Final = 0.012  # of the radius, along and across: no pupil is quite round
-ROLL_DEG: Final = 30.0  # about the coarse search's, which goes in steps of 45: nearly even
-ROLL: Final = 9  # its place among the fitted parameters
-SNAP_DEG: Final = 10.0  # rolls below this are taken for none
-PUPIL_NOISE_MM: Final = 0.025  # of single edge points: the ruff's scallops
-LIMBUS_NOISE_MM: Final = 0.05
-UPRIGHT_NOISE_MM: Final = 0.1  # once no roll is sought: else uneven sclera turns an eye 2 degrees
 
 
 @dataclass(frozen=True)
@@ -163,120 +146,3 @@ def seen_through(s: Array, camera_mm: Array) -> Array:
     p = on_surface(s)
     bent = refract(unit(p - camera_mm), surface_normal(p), ior_ratio=1.0 / CORNEA_IOR)
     return to_iris_plane(p, bent)
-
-
-def find_pose(edges: Edges, *, turn: float, limbus_mm: float, distance_mm: float) -> Pose:
-    """Fit the model eye to the edges.
-
-    ``turn`` is the coarse direction of the line between the lids' corners, radians, y down;
-    ``limbus_mm`` the visible iris's true width: a larger eye is the same picture of the model eye
-    at another scale.
-    """
-    limbus, pupil = edges.limbus, edges.pupil
-    start_scale = limbus.ellipse.major / float(VISIBLE_LIMBUS_MM[0, 0])
-    roll, spread = _roll(turn), math.radians(ROLL_DEG)
-    limbus_noise = LIMBUS_NOISE_MM
-    start = np.array(
-        [
-            limbus.ellipse.x,
-            limbus.ellipse.y,
-            math.log(start_scale),
-            0.02,
-            0.02,
-            pupil.ellipse.radius / start_scale / 1.12,
-            0.0,
-            0.0,
-            LIMBUS_HEIGHT_RATIO,
-            roll,
-            0.0,
-            0.0,
-        ]
-    )
-    model_distance = distance_mm * MODEL_LIMBUS_MM / limbus_mm
-
-    def pose(values: Array) -> Pose:
-        x, y, scale, yaw, pitch, radius, px, py, ratio, turned, *oval = (float(v) for v in values)
-        return Pose(
-            x,
-            y,
-            math.exp(scale),
-            yaw,
-            pitch,
-            turned,
-            model_distance,
-            radius,
-            px,
-            py,
-            ratio,
-            (oval[0], oval[1]),
-        )
-
-    def residuals(values: Array) -> Array:
-        trial = pose(values)
-        # An ellipse's many edge points are no independent witnesses: each edge weighs as 40.
-        parts = [
-            _apart(edge.points, contour, trial.px_per_mm) / noise * math.sqrt(40 / len(edge.points))
-            for edge, contour, noise in (
-                (pupil, trial.pupil(), PUPIL_NOISE_MM),
-                (limbus, trial.limbus(), limbus_noise),
-            )
-        ]
-        prior = np.array(
-            [
-                trial.yaw / math.radians(TILT_DEG),
-                trial.pitch / math.radians(TILT_DEG),
-                trial.pupil_x_mm / DECENTRE_MM,
-                trial.pupil_y_mm / DECENTRE_MM,
-                (trial.height_ratio - LIMBUS_HEIGHT_RATIO) / HEIGHT_RATIO,
-                (trial.roll - roll) / spread,
-                trial.oval[0] / PUPIL_OVAL,
-                trial.oval[1] / PUPIL_OVAL,
-            ]
-        )
-        soft = [] if edges.softness is None else [edges.softness.errors(trial.roll)]
-        return np.concatenate([*parts, *soft, prior])
-
-    x_scale = np.array([1.0, 1.0, 0.01, 0.1, 0.1, 0.05, 0.1, 0.1, 0.01, 0.1, 0.01, 0.01])
-
-    def best(first: list[Array], *, most: int) -> Array:
-        fits = [
-            optimize.least_squares(residuals, at, x_scale=x_scale, loss="soft_l1", max_nfev=most)
-            for at in first
-        ]
-        return np.asarray(min(fits, key=lambda fit: float(fit.cost)).x)
-
-    # Both turns explain a shortened circle alike until the pupil's shift tells them apart.
-    turns = [start * _signs(sx, sy) for sx in (6.0, -6.0) for sy in (6.0, -6.0)]
-    found = best([best(turns, most=25)], most=30)
-    if abs(found[ROLL]) > math.radians(SNAP_DEG):
-        return pose(found)
-    # The limbus is too nearly round to tell a small roll from none: the photograph's own vertical.
-    roll, spread, limbus_noise = 0.0, 1e-4, UPRIGHT_NOISE_MM
-    return pose(best([found], most=30))
-
-
-def _signs(yaw: float, pitch: float) -> Array:
-    return np.array([1.0, 1.0, 1.0, yaw, pitch, *[1.0] * 7])
-
-
-def _roll(turn: float) -> float:
-    """Return a turn of the lids' axis, y down, as an anticlockwise roll within a right angle."""
-    roll = -turn
-    while roll <= -math.pi / 2:
-        roll += math.pi
-    return roll
-
-
-def _apart(points: Array, contour: Array, px_per_mm: float) -> Array:
-    """Return how far points lie outside a closed contour around its mean, in mm."""
-    middle = contour.mean(axis=0)
-    angle, radius = _polar(contour - middle)
-    order = np.argsort(angle)
-    at, r = _polar(points - middle)
-    return np.asarray(
-        (r - np.interp(at, angle[order], radius[order], period=2 * np.pi)) / px_per_mm
-    )
-
-
-def _polar(v: Array) -> tuple[Array, Array]:
-    return np.arctan2(v[:, 1], v[:, 0]), np.hypot(v[:, 0], v[:, 1])

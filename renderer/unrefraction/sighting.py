@@ -15,7 +15,8 @@ import numpy.typing as npt
 
 from renderer.unrefraction.edges import Edges, find_edges
 from renderer.unrefraction.photograph import Photograph
-from renderer.unrefraction.pose import TELECENTRIC_MM, Pose, find_pose
+from renderer.unrefraction.pose import TELECENTRIC_MM, Pose
+from renderer.unrefraction.pose_fit import find_pose
 from renderer.unrefraction.refusal import PhotographError
 from renderer.unrefraction.search import Candidate, find_candidates
 

@@ -14,7 +14,8 @@ from renderer.unrefraction.edges import Edge, Edges
 from renderer.unrefraction.ellipse import Ellipse, fit_ellipse, robust_ellipse
 from renderer.unrefraction.fill import fill_hidden
 from renderer.unrefraction.light import even_light
-from renderer.unrefraction.pose import TELECENTRIC_MM, Pose, find_pose, seen_through
+from renderer.unrefraction.pose import TELECENTRIC_MM, Pose, seen_through
+from renderer.unrefraction.pose_fit import find_pose
 from renderer.unrefraction.search import find_candidates
 from renderer.unrefraction.texels import Texels, place_texels
 from renderer.unrefraction.tissue import (
