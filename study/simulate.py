@@ -13,8 +13,7 @@ import numpy as np
 from analysis.simulation.observers import Answer, Observer, draw_observer
 from study.answering import about_answers, attention_answer, stimulus, trial_answers
 from study.checking import pass_checks
-from study.data import answers, arms, consents, pauses, studies, trials, views
-from study.data import progress as steps
+from study.data import answers, arms, consents, pauses, steps, studies, trials, views
 from study.data.database import Database
 from study.data.enrolment import enrol
 from study.data.participants import Participant

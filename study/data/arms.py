@@ -8,22 +8,61 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from typing import Any, Final
 
 import numpy as np
-from sqlalchemy import and_, func, or_, select
-from sqlalchemy.orm import Session
+from sqlalchemy import and_, bindparam, func, or_, select, update
 
 from study.data.completion import COMPLETED, FAILED
 from study.data.database import Database
-from study.data.participants import IDLE, Participant, locked, record_of
+from study.data.errands import Errand
+from study.data.participants import IDLE, Participant, finding, record_of
+from study.data.prepared import Prepared, table_of
 from study.data.readiness import Screen, fitting_sizes, ready_arms
 from study.data.schema import ParticipantRow, StudyRow
-from study.data.studies import Study, by_id, gate
+from study.data.senders import locking_again
+from study.data.studies import Study, by_id
 from study.design.arms import Arm, all_arms, assign_arm, assign_row
 from study.design.definition import StudyDefinition
 from study.design.parts import read_size
 from study.design.schedule import order_rows
 
+_P: Final = table_of(ParticipantRow)
+_S: Final = table_of(StudyRow)
+GATE: Final = Prepared(
+    select(_S.c.id).where(_S.c.id == bindparam("study")).with_for_update(key_share=True)
+)
+"""Lets one transaction after the other pass; ``studies.gate`` says why."""
+_LEASE: Final = Prepared(
+    update(_P)
+    .where(_P.c.id == bindparam("who"))
+    .values(
+        size=bindparam("wide"),
+        orbit_direction=bindparam("way"),
+        block=bindparam("part"),
+        order_row=bindparam("order"),
+        lease_until=bindparam("until"),
+    )
+)
+_PLACES: Final = (_P.c.size, _P.c.orbit_direction, _P.c.block, _P.c.order_row)
+_FILLED: Final = Prepared(
+    select(*_PLACES, func.count().label("people"))
+    .where(
+        _P.c.study_id == bindparam("study"),
+        _P.c.simulated == bindparam("kind"),
+        _P.c.size.is_not(None),
+        _P.c.id != bindparam("but"),
+        or_(
+            # Whoever failed the study's checks has not filled a place: somebody else may.
+            and_(
+                _P.c.completed_at.is_not(None),
+                func.coalesce(_P.c.outcome, COMPLETED) != FAILED,
+            ),
+            _P.c.lease_until > bindparam("now"),
+        ),
+    )
+    .group_by(*_PLACES)
+)
 Filled = Counter[tuple[Arm, int | None]]
 """How many completed or are at work, by arm and row of the orders."""
 
@@ -42,49 +81,73 @@ def assign(
     ``available`` replaces the arms whose clips are rendered (simulations need no clips).
     """
     definition = by_id(db, participant.study_id).definition
-    fitting = fitting_sizes(definition, screen)
-    with db.writing() as session:
-        # Two who come at once must not both take the last free place: the study's row is the gate.
-        gate(session, StudyRow.id == participant.study_id)
-        row = locked(session, participant)
-        if row.size is not None and (row.begun_at or read_size(row.size) in fitting):
-            return record_of(row)
-        open_arms = ready_arms(session, definition) if available is None else list(available)
-        size = next((str(s) for s in fitting if any(a.size == str(s) for a in open_arms)), None)
-        if size is None:
-            return None
-        _lease(db, session, row, definition, [arm for arm in open_arms if arm.size == size])
-        return record_of(row)
+    return db.run(lambda: leasing(db, participant, definition, screen=screen, available=available))
 
 
-def _lease(
+def leasing(
     db: Database,
-    session: Session,
-    row: ParticipantRow,
+    participant: Participant,
     definition: StudyDefinition,
-    choice: Sequence[Arm],
-) -> None:
-    filled = _filled(db, session, row.study_id, simulated=row.simulated, but=row.id)
-    rng = np.random.default_rng(row.seed)
+    *,
+    screen: Screen | None = None,
+    available: Sequence[Arm] | None = None,
+) -> Errand[Participant | None]:
+    """Do the same as an errand, one after the other: it asks for the study's row first.
+
+    Two who come at once must not both take the last free place.
+    """
+    yield GATE, {"study": participant.study_id}
+    who = yield from locking_again(participant)
+    if keeps_arm(who, definition, screen):
+        return record_of(who)
+    open_arms = available if available is not None else (yield from ready_arms(definition))
+    sizes = [str(size) for size in fitting_sizes(definition, screen)]
+    size = next((one for one in sizes if any(arm.size == one for arm in open_arms)), None)
+    if size is None:
+        return None
+    yield from _take(db, who, definition, [arm for arm in open_arms if arm.size == size])
+    return record_of((yield from finding("id", who.id)))
+
+
+def keeps_arm(who: Any, definition: StudyDefinition, screen: Screen | None) -> bool:
+    """Say whether somebody has an arm that they keep: it fits the screen, or they have begun."""
+    if who.size is None:
+        return False
+    return who.begun_at is not None or read_size(who.size) in fitting_sizes(definition, screen)
+
+
+def _take(
+    db: Database, who: Any, definition: StudyDefinition, choice: Sequence[Arm]
+) -> Errand[None]:
+    filled = yield from _filling(db, who.study_id, simulated=who.simulated, but=who.id)
+    rng = np.random.default_rng(who.seed)
     arm = assign_arm(_by_arm(filled), choice, rng, blocks=definition.blocks)
-    row.size, row.orbit_direction, row.block = arm.size, arm.orbit_direction, arm.block
-    if row.order_row is None:
+    order_row = who.order_row
+    if order_row is None:
         used = Counter({(a, n): count for (a, n), count in filled.items() if n is not None})
-        row.order_row = assign_row(used, arm, len(order_rows(definition)), rng)
-    row.lease_until = db.now() + IDLE
+        order_row = assign_row(used, arm, len(order_rows(definition)), rng)
+    yield (
+        _LEASE,
+        {
+            "who": who.id,
+            "wide": arm.size,
+            "way": arm.orbit_direction,
+            "part": arm.block,
+            "order": order_row,
+            "until": db.now() + IDLE,
+        },
+    )
 
 
 def counts(db: Database, study: Study, *, simulated: bool = False) -> dict[Arm, int]:
     """Return completed participants plus live leases of every arm."""
-    with db.reading() as session:
-        filled = _by_arm(_filled(db, session, study.id, simulated=simulated))
+    filled = _by_arm(db.look(lambda: _filling(db, study.id, simulated=simulated)))
     return {arm: filled[arm] for arm in all_arms(study.definition)}
 
 
 def row_counts(db: Database, study: Study, *, simulated: bool = False) -> dict[int, int]:
     """Return completed participants plus live leases of every row of the orders, from 1."""
-    with db.reading() as session:
-        filled = _filled(db, session, study.id, simulated=simulated)
+    filled = db.look(lambda: _filling(db, study.id, simulated=simulated))
     found = dict.fromkeys(range(1, len(order_rows(study.definition)) + 1), 0)
     for (_, number), count in filled.items():
         if number is not None:
@@ -106,39 +169,17 @@ def _by_arm(filled: Filled) -> Counter[Arm]:
     return found
 
 
-def _filled(
-    db: Database, session: Session, study_id: int, *, simulated: bool, but: int | None = None
-) -> Filled:
+def _filling(
+    db: Database, study_id: int, *, simulated: bool, but: int | None = None
+) -> Errand[Filled]:
     """Count one kind of people, as simulated ones must not unbalance real ones.
 
     ``but`` leaves out the participant who asks: a lease that they give up is no longer one.
     """
-    places = (
-        ParticipantRow.size,
-        ParticipantRow.orbit_direction,
-        ParticipantRow.block,
-        ParticipantRow.order_row,
-    )
-    query = (
-        select(*places, func.count())
-        .where(
-            ParticipantRow.study_id == study_id,
-            ParticipantRow.simulated == simulated,
-            ParticipantRow.size.is_not(None),
-            or_(
-                # Whoever failed the study's checks has not filled a place: somebody else may.
-                and_(
-                    ParticipantRow.completed_at.is_not(None),
-                    func.coalesce(ParticipantRow.outcome, COMPLETED) != FAILED,
-                ),
-                ParticipantRow.lease_until > db.now(),
-            ),
-        )
-        .group_by(*places)
-    )
-    if but is not None:
-        query = query.where(ParticipantRow.id != but)
+    values = {"study": study_id, "kind": simulated, "now": db.now(), "but": but or 0}
+    rows = yield _FILLED, values
     found: Filled = Counter()
-    for size, direction, block, order_row, count in session.execute(query):
-        found[Arm(size or "", direction or "", block), order_row] += count
+    for row in rows:
+        arm = Arm(row.size or "", row.orbit_direction or "", row.block)
+        found[arm, row.order_row] += row.people
     return found

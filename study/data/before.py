@@ -12,14 +12,18 @@ from typing import Any, Final
 from sqlalchemy import func, select
 
 from study.data import events
-from study.data.checks import CheckName, done_checks
+from study.data.checks import CheckName, doing
 from study.data.database import Database
+from study.data.errands import Errand
 from study.data.events import Recorded
-from study.data.participants import Participant, locked
+from study.data.notes import noting, told_before
+from study.data.participants import Participant
 from study.data.progress import early_step
 from study.data.refusals import NotReachedError
 from study.data.schema import EventRow
+from study.data.senders import locking_again
 from study.data.studies import by_id
+from study.design.definition import StudyDefinition
 
 DEVICE_FAILED: Final = "device_check_failed"
 EYESIGHT_AGREED: Final = "eyesight_agreed"
@@ -39,17 +43,36 @@ def record(
     Raises NotReachedError for a check that comes later, or not at all.
     """
     definition = by_id(db, participant.study_id).definition
-    with db.writing() as session:
-        row = locked(session, participant)
-        done = done_checks(session, row.id, definition)
-        if check in done or events.is_known(session, row, key):
-            return Recorded(False)
-        if early_step(row, definition, done) != check:
-            raise NotReachedError(f"{check} comes after what is still open, or not at all")
-        payload = {"report": dict(report), "facts": dict(facts)}
-        return Recorded(
-            events.add(session, row, key=key, kind=check, payload=payload, now=db.now())
+
+    def errand() -> Errand[bool]:
+        who = yield from locking_again(participant)
+        return (
+            yield from recording(db, who, definition, check, key=key, report=report, facts=facts)
         )
+
+    return Recorded(db.run(errand))
+
+
+def recording(
+    db: Database,
+    who: Any,
+    definition: StudyDefinition,
+    check: CheckName,
+    *,
+    key: str,
+    report: Mapping[str, Any],
+    facts: Mapping[str, Any],
+) -> Errand[bool]:
+    """Do the same among other errands; ``who`` is the participant's row, held for writing."""
+    done = yield from doing(who, definition)
+    state = yield from told_before(who, key)
+    if check in done or state.is_known:
+        return False
+    if early_step(who, definition, done) != check:
+        raise NotReachedError(f"{check} comes after what is still open, or not at all")
+    payload = {"report": dict(report), "facts": dict(facts)}
+    note = noting(who, state, key=key, kind=check, payload=payload, now=db.now())
+    return (yield from note)
 
 
 def facts_of(db: Database, participant: Participant, check: CheckName) -> dict[str, Any]:

@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Final, Literal
 
 from sqlalchemy import bindparam, or_, select
-from sqlalchemy.orm import Session
 
 from study.data.consents import CONSENTED, agrees_to_health
 from study.data.errands import Errand
@@ -36,22 +35,8 @@ def wanted(definition: StudyDefinition) -> tuple[CheckName, ...]:
     return tuple(name for name in CHECKS if getattr(definition, name) is not None)
 
 
-def done_checks(
-    session: Session, participant_id: int, definition: StudyDefinition
-) -> frozenset[str]:
-    """Return the checks that a participant is done with."""
-    if not wanted(definition):
-        return frozenset()
-    query = (
-        select(EventRow.kind, EventRow.payload)
-        .where(EventRow.participant_id == participant_id, EventRow.kind.in_([*CHECKS, CONSENTED]))
-        .order_by(EventRow.id)
-    )
-    return done_in([(kind, payload) for kind, payload in session.execute(query)], definition)
-
-
 def doing(who: Any, definition: StudyDefinition) -> Errand[frozenset[str]]:
-    """Return the same as an errand; ``who`` is the participant's row."""
+    """Return the checks that a participant is done with; ``who`` is their row."""
     if not wanted(definition):
         return frozenset()
     rows = yield _EVENTS, {"who": who.id}

@@ -12,8 +12,8 @@ from sqlalchemy import select
 from study.data.checks import CHECKS, done_in
 from study.data.database import Database
 from study.data.pauses import attention_answers
-from study.data.progress import ABOUT
 from study.data.schema import EventRow, ParticipantRow, SessionRow, TrialRow
+from study.data.steps import ABOUT
 from study.data.studies import Study
 from study.data.trials import Trial, trial_of
 from study.design.questions import Value

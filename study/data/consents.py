@@ -9,62 +9,89 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
-from sqlalchemy import select
-from sqlalchemy.orm import Session
+from sqlalchemy import bindparam, select
 
-from study.data import events
 from study.data.database import Database
+from study.data.errands import Errand
 from study.data.events import Recorded
-from study.data.participants import Participant, locked
+from study.data.notes import noting, told_before
+from study.data.participants import Participant
+from study.data.prepared import Prepared, table_of
 from study.data.schema import EventRow
+from study.data.senders import locking_again
 from study.data.studies import by_id
+from study.design.definition import StudyDefinition
 
 CONSENTED: Final = "consented"
+_E: Final = table_of(EventRow)
+_GIVEN: Final = Prepared(
+    select(_E.c.payload)
+    .where(_E.c.participant_id == bindparam("who"), _E.c.kind == CONSENTED)
+    .order_by(_E.c.id)
+)
+_MORE: Final = Prepared(
+    select(_E.c.id).where(_E.c.participant_id == bindparam("who"), _E.c.kind != CONSENTED).limit(1)
+)
 
 
 def give_consent(
     db: Database, participant: Participant, *, key: str, payload: Mapping[str, Any] | None = None
 ) -> Recorded:
     """Record that the participant agrees to the consent text of their study's version."""
-    consent = by_id(db, participant.study_id).definition.consent
-    kept = {**(payload or {}), "consent_version": consent.version}
-    with db.writing() as session:
-        row = locked(session, participant)
-        now = db.now()
-        row.consented_at = row.consented_at or now
-        return Recorded(events.add(session, row, key=key, kind=CONSENTED, payload=kept, now=now))
+    definition = by_id(db, participant.study_id).definition
+
+    def errand() -> Errand[bool]:
+        who = yield from locking_again(participant)
+        return (yield from _consenting(db, who, definition, payload or {}, key=key))
+
+    return Recorded(db.run(errand))
 
 
-def agree(db: Database, participant: Participant, payload: Mapping[str, Any]) -> Recorded:
+def agreeing(
+    db: Database, who: Any, definition: StudyDefinition, payload: Mapping[str, Any]
+) -> Errand[bool]:
     """Record what was agreed to by the form; sent again, only what it changes.
 
-    Nothing changes for somebody who has gone on.
+    ``who`` is the participant's row. Nothing changes for somebody who has gone on.
     """
-    with db.writing() as session:
-        given = _given(session, locked(session, participant).id)
-        if given and (has_gone_on(session, participant.id) or _is_same(given[-1], payload)):
-            return Recorded(False)
-        key = "consent" if not given else f"consent-{len(given) + 1}"
-        return give_consent(db, participant, key=key, payload=payload)
+    given = yield from _giving(who.id)
+    if given and (_is_same(given[-1], payload) or (yield from going_on(who.id))):
+        return False
+    key = "consent" if not given else f"consent-{len(given) + 1}"
+    return (yield from _consenting(db, who, definition, payload, key=key))
 
 
-def has_gone_on(session: Session, participant_id: int) -> bool:
-    """Say whether anything is recorded about a participant besides that they agreed."""
-    query = select(EventRow.id).where(
-        EventRow.participant_id == participant_id, EventRow.kind != CONSENTED
+def _consenting(
+    db: Database, who: Any, definition: StudyDefinition, payload: Mapping[str, Any], *, key: str
+) -> Errand[bool]:
+    kept = {**payload, "consent_version": definition.consent.version}
+    state = yield from told_before(who, key)
+    return (
+        yield from noting(
+            who,
+            state,
+            key=key,
+            kind=CONSENTED,
+            payload=kept,
+            now=db.now(),
+            stamp="consented_at",
+        )
     )
-    return session.scalar(query.limit(1)) is not None
+
+
+def going_on(participant_id: int) -> Errand[bool]:
+    """Say whether anything is recorded about a participant besides that they agreed."""
+    return bool((yield _MORE, {"who": participant_id}))
 
 
 def allows_health(db: Database, participant: Participant) -> bool:
     """Say whether a participant lets us ask about their eyesight and colour vision."""
-    with db.reading() as session:
-        return has_health_consent(session, participant.id)
+    return db.look(lambda: allowing_health(participant.id))
 
 
-def has_health_consent(session: Session, participant_id: int) -> bool:
-    """Say the same within a transaction."""
-    return agrees_to_health(_given(session, participant_id))
+def allowing_health(participant_id: int) -> Errand[bool]:
+    """Say the same as an errand."""
+    return agrees_to_health((yield from _giving(participant_id)))
 
 
 def agrees_to_health(given: Iterable[Mapping[str, Any]]) -> bool:
@@ -73,13 +100,9 @@ def agrees_to_health(given: Iterable[Mapping[str, Any]]) -> bool:
     return last.get("health") is True
 
 
-def _given(session: Session, participant_id: int) -> list[dict[str, Any]]:
-    query = (
-        select(EventRow.payload)
-        .where(EventRow.participant_id == participant_id, EventRow.kind == CONSENTED)
-        .order_by(EventRow.id)
-    )
-    return list(session.scalars(query))
+def _giving(participant_id: int) -> Errand[list[dict[str, Any]]]:
+    rows = yield _GIVEN, {"who": participant_id}
+    return [row.payload for row in rows]
 
 
 def _is_same(given: Mapping[str, Any], payload: Mapping[str, Any]) -> bool:

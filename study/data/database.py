@@ -92,6 +92,15 @@ class Database:
             session.expire_all()
             return found
 
+    @contextmanager
+    def inside(self, session: Session) -> Iterator[None]:
+        """Let what is called in the block join the transaction of an errand's session."""
+        mark = self._session.set((session, True))
+        try:
+            yield
+        finally:
+            self._session.reset(mark)
+
     def look(self, make: Make[T]) -> T:
         """Run one errand that only reads one consistent state."""
         outer = self._session.get()
@@ -106,6 +115,12 @@ class Database:
             return eyes.look(make)
         finally:
             self._idle.append(eyes)
+
+    @contextmanager
+    def glance(self) -> Iterator[Connection]:
+        """Give a connection for looks of many at one consistent state."""
+        with self._reading_engine.begin() as connection:
+            yield connection
 
     def eyes(self) -> Eyes:
         """Return a connection of one's own for reading, one errand after the other."""

@@ -8,16 +8,40 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from sqlalchemy import func, select
-from sqlalchemy.orm import Session
+from sqlalchemy import bindparam, insert, select
 
 from study.data.database import Database
 from study.data.devices import read_device
-from study.data.participants import Participant, open_sitting, record_of, token_hash
-from study.data.schema import ParticipantRow
+from study.data.errands import Errand
+from study.data.participants import Participant, finding, record_of, token_hash
+from study.data.prepared import Prepared, table_of
+from study.data.schema import ParticipantRow, SessionRow
 from study.data.studies import Study
 
 _ALPHABET: Final = "23456789abcdefghjkmnpqrstvwxyz"  # nothing that reads like something else
+_P: Final = table_of(ParticipantRow)
+_S: Final = table_of(SessionRow)
+_GIVEN: Final = (
+    *("study_id", "public_id", "token_hash", "simulated", "language", "seed", "recruited_by"),
+    *("created_at", "last_seen_at", "arrival", "person_key"),
+)
+_TAKEN: Final = Prepared(select(_P.c.id).where(_P.c.public_id == bindparam("name")))
+_ADD: Final = Prepared(
+    insert(_P)
+    .values({name: bindparam(f"new_{name}") for name in _GIVEN})
+    .returning(_P.c.id.label("number"))
+)
+_SIT: Final = Prepared(
+    insert(_S)
+    .values(
+        participant_id=bindparam("who"),
+        number=1,
+        device=bindparam("facts"),
+        started_at=bindparam("now"),
+        last_seen_at=bindparam("now"),
+    )
+    .inline()
+)
 
 
 @dataclass(frozen=True)
@@ -28,46 +52,54 @@ class Enrolment:
     token: str
 
 
-def enrol(
+def enrol(db: Database, study: Study, **facts: Any) -> Enrolment:
+    """Add a participant, in a transaction of its own; ``facts`` are those of ``enrolling``."""
+    token = facts.pop("token", None) or secrets.token_urlsafe(32)
+    row = db.run(lambda: enrolling(db, study, token=token, **facts))
+    return Enrolment(record_of(row), token)
+
+
+def enrolling(
     db: Database,
     study: Study,
     *,
+    token: str,
     simulated: bool = False,
     rng: np.random.Generator | None = None,
     language: str | None = None,
     recruited_by: str = "link",
+    arrival: Mapping[str, str] | None = None,
+    person_key: str | None = None,
     device: Mapping[str, Any] | None = None,
-    token: str | None = None,
-) -> Enrolment:
-    """Add a participant. ``device`` describes screen and browser; the table's column names are
-    ``screen_width``, ``screen_height``, ``pixel_ratio`` and ``user_agent_family``.
+) -> Errand[Any]:
+    """Add a participant; returns their row.
 
-    With ``rng`` pseudonym and seed can be repeated; the token cannot, unless it is given.
+    ``device`` describes screen and browser; the table's column names are ``screen_width``,
+    ``screen_height``, ``pixel_ratio`` and ``user_agent_family``. With ``rng`` pseudonym and seed
+    can be repeated.
     """
     drawn = rng or np.random.default_rng(secrets.randbits(128))
-    token = token or secrets.token_urlsafe(32)
+    name = _pseudonym(drawn)
+    while (yield _TAKEN, {"name": name}):
+        name = _pseudonym(drawn)
     now = db.now()
-    with db.writing() as session:
-        row = ParticipantRow(
-            study_id=study.id,
-            public_id=_free_pseudonym(session, drawn),
-            token_hash=token_hash(token),
-            simulated=simulated,
-            language=language or study.definition.language,
-            seed=int(drawn.integers(2**62)),
-            recruited_by=recruited_by[:60],
-            created_at=now,
-            last_seen_at=now,
-        )
-        session.add(row)
-        session.flush()
-        open_sitting(session, row, now, read_device(device or {}), number=1)
-        return Enrolment(record_of(row), token)
+    facts = {
+        "study_id": study.id,
+        "public_id": name,
+        "token_hash": token_hash(token),
+        "simulated": simulated,
+        "language": language or study.definition.language,
+        "seed": int(drawn.integers(2**62)),
+        "recruited_by": recruited_by[:60],
+        "created_at": now,
+        "last_seen_at": now,
+        "arrival": dict(arrival) if arrival else None,
+        "person_key": person_key,
+    }
+    [added] = yield _ADD, {f"new_{name}": value for name, value in facts.items()}
+    yield _SIT, {"who": added.number, "facts": read_device(device or {}), "now": now}
+    return (yield from finding("id", added.number))
 
 
-def _free_pseudonym(session: Session, rng: np.random.Generator) -> str:
-    while True:
-        name = "p-" + "".join(_ALPHABET[i] for i in rng.integers(len(_ALPHABET), size=8))
-        taken = select(func.count()).where(ParticipantRow.public_id == name)
-        if not session.scalar(taken):
-            return name
+def _pseudonym(rng: np.random.Generator) -> str:
+    return "p-" + "".join(_ALPHABET[i] for i in rng.integers(len(_ALPHABET), size=8))

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Delete, Insert, Select, Table, Update
+from sqlalchemy import Delete, Float, Insert, Select, Table, Update
 from sqlalchemy.engine import Dialect
 from sqlalchemy.types import TypeEngine
 
@@ -48,16 +48,16 @@ def table_of(kind: type[Base]) -> Table:
 class Prepared:
     """A statement whose values are named by ``bindparam``; it may run on both kinds of databases.
 
-    Rows are named tuples of the selected columns. Lists of values (``in_``) cannot be bound.
+    Rows are named tuples of the selected columns, or of those that a change returns. Lists of
+    values (``in_``) cannot be bound.
     """
 
     def __init__(self, statement: Select[Any] | Insert | Update | Delete) -> None:
         self.writes = not isinstance(statement, Select)
         self._statement = statement
         self._ready: dict[str, _Ready] = {}
-        columns = statement.exported_columns if isinstance(statement, Select) else ()
-        self._columns = tuple(columns)
-        self._make = _row_maker([str(column.key) for column in columns])
+        self._columns = tuple(statement.exported_columns)
+        self._make = _row_maker([str(column.key) for column in self._columns])
 
     def send(self, connection: Any, dialect: Dialect, values: Values) -> Any:
         """Run it on a driver's connection and return the driver's cursor, for ``rows``."""
@@ -66,7 +66,7 @@ class Prepared:
 
     def rows(self, cursor: Any, dialect: Dialect) -> list[Any]:
         """Read what a cursor of ``send`` has found."""
-        if self.writes:
+        if not self._columns:
             return []
         make, out = self._make, self._ready[dialect.name].out
         return [make(_converted(row, out)) for row in cursor.fetchall()]
@@ -107,6 +107,8 @@ def _into(kind: TypeEngine[Any], dialect: Dialect) -> Convert | None:
 
 
 def _out(kind: TypeEngine[Any], dialect: Dialect) -> Convert | None:
+    if isinstance(kind, Float):  # drivers read them as they are; PostgreSQL's asks for a number
+        return None
     return kind.result_processor(dialect, None)
 
 

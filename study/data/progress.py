@@ -6,22 +6,19 @@ event; after that the first trial that is not complete is the current one.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-from study.data import consents, events, pauses, trials
-from study.data.checks import CHECKS, doing, done_checks, wanted
+from study.data import pauses, trials
+from study.data.checks import CHECKS, doing, wanted
 from study.data.database import Database
 from study.data.errands import Errand
-from study.data.events import Recorded
-from study.data.participants import Participant, finding, locked
-from study.data.refusals import NotReachedError
+from study.data.participants import Participant, finding
 from study.data.studies import by_id
 from study.data.trials import Trial
 from study.design.definition import StudyDefinition
 from study.design.pauses import Pause
-from study.design.questions import Question, read_answers
 
 StepName = Literal[
     "consent",
@@ -46,7 +43,6 @@ STEPS: Final[tuple[StepName, ...]] = (
 )
 SCREENED_OUT: Final = "screened_out"
 """The outcome of somebody who cannot take part, and the name of that step and its event."""
-ABOUT, INSTRUCTED, BEGUN = "about", "instructed", "begun"
 
 
 @dataclass(frozen=True)
@@ -73,6 +69,17 @@ def _stepping(participant: Participant, definition: StudyDefinition) -> Errand[S
     who = yield from finding("id", participant.id)
     if who is None or who.public_id != participant.public_id:
         return Step("withdrawn")
+    return (yield from stepping(who, definition))
+
+
+def stepping_on(participant_id: int, definition: StudyDefinition) -> Errand[Step]:
+    """Return where somebody is now that something was written about them."""
+    who = yield from finding("id", participant_id)
+    return (yield from stepping(who, definition))
+
+
+def stepping(who: Any, definition: StudyDefinition) -> Errand[Step]:
+    """Return where somebody is; ``who`` is their row."""
     done = () if who.instructed_at else (yield from doing(who, definition))
     early = early_step(who, definition, done)
     if early is not None:
@@ -123,70 +130,3 @@ def early_step(row: Any, definition: StudyDefinition, done: Collection[str]) -> 
         open_checks = (name for name in wanted(definition) if name not in done)
         return next(open_checks, "instructions")
     return "preparing" if row.begun_at is None else None
-
-
-def store_about(
-    db: Database, participant: Participant, given: Mapping[str, object], *, key: str
-) -> Recorded:
-    """Store the answers about the participant; sent again with another key, the later ones count.
-
-    Raises AnswerError naming every answer that cannot be stored, NotReachedError before consent.
-    """
-    definition = by_id(db, participant.study_id).definition
-    with db.writing() as session:
-        row = locked(session, participant)
-        if row.consented_at is None:
-            raise NotReachedError("the questions about you come after the consent")
-        if events.is_known(session, row, key):
-            return Recorded(False)
-        asked = asked_about(definition, with_health=consents.has_health_consent(session, row.id))
-        answers = read_answers(asked, given)
-        now = db.now()
-        row.about_at = row.about_at or now
-        payload = {"answers": answers}
-        return Recorded(events.add(session, row, key=key, kind=ABOUT, payload=payload, now=now))
-
-
-def asked_about(definition: StudyDefinition, *, with_health: bool) -> tuple[Question, ...]:
-    """Return the questions about the participant that they let us ask."""
-    return tuple(
-        question
-        for question in definition.about
-        if definition.consent.asks(question.id, with_health=with_health)
-    )
-
-
-def finish_instructions(db: Database, participant: Participant, *, key: str) -> Recorded:
-    """Record that the participant has read the instructions."""
-    definition = by_id(db, participant.study_id).definition
-    with db.writing() as session:
-        row = locked(session, participant)
-        done = done_checks(session, row.id, definition)
-        if early_step(row, definition, done) in ("consent", "about", *CHECKS):
-            raise NotReachedError(
-                "the instructions come after the consent, the questions about you and the checks"
-            )
-        now = db.now()
-        row.instructed_at = row.instructed_at or now
-        return Recorded(events.add(session, row, key=key, kind=INSTRUCTED, payload={}, now=now))
-
-
-def begin(
-    db: Database, participant: Participant, *, key: str, payload: Mapping[str, Any] | None = None
-) -> Recorded:
-    """Start the trials: lays them out from the participant's seed and arm (``arms.assign``).
-
-    Raises NotReachedError while there is no arm or an earlier step is open.
-    """
-    definition = by_id(db, participant.study_id).definition
-    with db.writing() as session:
-        row = locked(session, participant)
-        done = done_checks(session, row.id, definition)
-        if early_step(row, definition, done) not in ("preparing", None) or row.size is None:
-            raise NotReachedError("the clips come after the instructions, once they are ready")
-        now = db.now()
-        row.begun_at = row.begun_at or now
-        trials.lay_out(session, row, definition)
-        return Recorded(
-            events.add(session, row, key=key, kind=BEGUN, payload=payload or {}, now=now)
-        )

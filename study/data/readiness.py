@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 from sqlalchemy import select
-from sqlalchemy.orm import Session
 
 from study.data.database import Database
+from study.data.errands import Errand
 from study.data.jobs import DONE, FAILED
 from study.data.participants import Participant
+from study.data.prepared import Prepared, table_of
 from study.data.schema import JobRow
 from study.data.studies import by_id
 from study.design.arms import Arm, all_arms, clips_of_arm
@@ -18,6 +20,10 @@ from study.design.parts import Size, read_size
 
 Screen = tuple[int, int]
 """Width and height in device pixels of what a clip may fill."""
+
+
+_J: Final = table_of(JobRow)
+_JOBS: Final = Prepared(select(_J.c.clip_id, _J.c.state, _J.c.progress))
 
 
 @dataclass(frozen=True)
@@ -49,9 +55,13 @@ class _Share:
 def readiness(db: Database, participant: Participant, *, screen: Screen | None) -> Readiness:
     """Say whether a participant with this screen can start; ``fits`` is False on a small screen."""
     definition = by_id(db, participant.study_id).definition
+    return db.look(lambda: surveying(definition, screen))
+
+
+def surveying(definition: StudyDefinition, screen: Screen | None) -> Errand[Readiness]:
+    """Say the same as an errand."""
     fitting = {str(size) for size in fitting_sizes(definition, screen)}
-    with db.reading() as session:
-        shares = _shares(session, definition)
+    shares = yield from _sharing(definition)
     mine = [shares[arm] for arm in shares if arm.size in fitting]
     if not mine:
         return Readiness(fits=False, is_ready=False, progress=0.0, clips_left=0)
@@ -74,15 +84,16 @@ def fitting_sizes(definition: StudyDefinition, screen: Screen | None) -> list[Si
     return [size for size in sizes if size.width <= screen[0] and size.height <= screen[1]]
 
 
-def ready_arms(session: Session, definition: StudyDefinition) -> list[Arm]:
+def ready_arms(definition: StudyDefinition) -> Errand[list[Arm]]:
     """Return the arms all of whose clips are rendered."""
-    return [arm for arm, share in _shares(session, definition).items() if share.left == 0]
+    shares = yield from _sharing(definition)
+    return [arm for arm, share in shares.items() if share.left == 0]
 
 
-def _shares(session: Session, definition: StudyDefinition) -> dict[Arm, _Share]:
+def _sharing(definition: StudyDefinition) -> Errand[dict[Arm, _Share]]:
     """Return for every arm how far its clips are; only a finished clip counts as whole."""
-    query = select(JobRow.clip_id, JobRow.state, JobRow.progress)
-    states = {clip_id: (state, share) for clip_id, state, share in session.execute(query)}
+    rows = yield _JOBS, {}
+    states = {row.clip_id: (row.state, row.progress) for row in rows}
     shares = {}
     for arm in all_arms(definition):
         files = clip_files(definition, arm)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from functools import lru_cache
 from typing import Any, Final
 
 from sqlalchemy import Row, bindparam, insert, select
@@ -14,7 +15,7 @@ from study.data.database import Database
 from study.data.errands import Errand
 from study.data.participants import Participant
 from study.data.prepared import Prepared, table_of
-from study.data.schema import EventRow, ParticipantRow, TrialRow
+from study.data.schema import EventRow, TrialRow
 from study.data.studies import by_id
 from study.design.definition import StudyDefinition
 from study.design.parts import read_size
@@ -105,6 +106,8 @@ _TRIAL: Final = TrialRow.__table__.columns
 _EVENT: Final = (EventRow.trial_id, EventRow.kind, EventRow.payload, EventRow.created_at)
 _T: Final = table_of(TrialRow)
 _E: Final = table_of(EventRow)
+_ANY: Final = Prepared(select(_T.c.id).where(_T.c.participant_id == bindparam("who")).limit(1))
+_LAID_OUT: Final = ("position", "number", "is_practice", "clip", "clip_id")
 _ALL: Final = Prepared(
     select(*_T.c).where(_T.c.participant_id == bindparam("who")).order_by(_T.c.position)
 )
@@ -158,34 +161,38 @@ def complete_plays(
     ]
 
 
-def lay_out(session: Session, row: ParticipantRow, definition: StudyDefinition) -> None:
+def laying_out(who: Any, definition: StudyDefinition) -> Errand[None]:
     """Write a participant's trials from their seed and arm; does nothing the second time."""
-    has_trials = session.scalar(
-        select(TrialRow.id).where(TrialRow.participant_id == row.id).limit(1)
-    )
-    if has_trials is not None or row.size is None or row.orbit_direction is None:
+    if who.size is None or who.orbit_direction is None or (yield _ANY, {"who": who.id}):
         return
-    files = definition.file_names(read_size(row.size), row.orbit_direction)
-    laid_out = [
-        {
-            "participant_id": row.id,
-            "position": trial.position,
-            "number": trial.number,
-            "is_practice": trial.is_practice,
-            "clip": trial.clip.id,
-            "clip_id": files[trial.clip.id],
-        }
-        for trial in schedule(definition, row.seed, block=row.block, order_row=row.order_row)
+    files = definition.file_names(read_size(who.size), who.orbit_direction)
+    laid_out = schedule(definition, who.seed, block=who.block, order_row=who.order_row)
+    values: dict[str, Any] = {"who": who.id}
+    for n, one in enumerate(laid_out):
+        cells = (one.position, one.number, one.is_practice, one.clip.id, files[one.clip.id])
+        values |= {f"{name}_{n}": cell for name, cell in zip(_LAID_OUT, cells, strict=True)}
+    yield _laid_out(len(laid_out)), values
+
+
+@lru_cache(maxsize=64)
+def _laid_out(count: int) -> Prepared:
+    """Return what writes so many trials at once."""
+    rows: list[dict[str, Any]] = [
+        {"participant_id": bindparam("who"), **{m: bindparam(f"{m}_{n}") for m in _LAID_OUT}}
+        for n in range(count)
     ]
-    session.flush()
-    session.execute(insert(_T), laid_out)
+    return Prepared(insert(_T).values(rows).inline())
 
 
 def clip_ids(db: Database, participant: Participant) -> tuple[str, ...]:
     """Return the clips that a participant with an arm will see, in order: what to preload."""
+    return clips_to_come(participant, by_id(db, participant.study_id).definition)
+
+
+def clips_to_come(participant: Participant, definition: StudyDefinition) -> tuple[str, ...]:
+    """Return the same, given the study."""
     if participant.size is None or participant.orbit_direction is None:
         return ()
-    definition = by_id(db, participant.study_id).definition
     files = definition.file_names(read_size(participant.size), participant.orbit_direction)
     places = {"block": participant.block, "order_row": participant.order_row}
     return tuple(files[t.clip.id] for t in schedule(definition, participant.seed, **places))

@@ -8,7 +8,7 @@ from typing import Final
 from fastapi import APIRouter
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import consents, events, progress
+from study.data import consents, events, steps
 from study.design.questions import AnswerError, Question
 from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
 from study.site.forms import answers_in, first, question_rows
@@ -29,7 +29,7 @@ def about(here: Here, visitor: AVisitor) -> Response:
 def questions_about(here: Here, visitor: Visitor) -> tuple[Question, ...]:
     """Return the questions about the participant, without those that they did not agree to."""
     with_health = consents.allows_health(here.db, visitor.participant)
-    return progress.asked_about(visitor.study.definition, with_health=with_health)
+    return steps.asked_about(visitor.study.definition, with_health=with_health)
 
 
 def _drafts(here: Here, visitor: Visitor) -> dict[str, object]:
@@ -63,7 +63,7 @@ def store_about(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response
     """Store the answers about the participant."""
     answers = answers_in(fields, questions_about(here, visitor))
     try:
-        progress.store_about(
+        steps.store_about(
             here.db, visitor.participant, answers, key=first(fields, "key") or "about"
         )
     except AnswerError as error:
@@ -86,5 +86,5 @@ def instructions(here: Here, visitor: AVisitor) -> Response:
 def read_instructions(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
     """Note that the instructions were read."""
     del fields  # the form carries only its proof
-    progress.finish_instructions(here.db, visitor.participant, key="instructions")
+    steps.finish_instructions(here.db, visitor.participant, key="instructions")
     return to_current(here, visitor)

@@ -6,7 +6,8 @@ from typing import Any
 
 from fastapi import Request
 
-from study.data import consents, entrance, limits
+from study.data import limits
+from study.data.entrance import Newcomer, entering
 from study.data.refusals import FormUsedError
 from study.data.studies import Study
 from study.site.access import ForgedError
@@ -47,20 +48,17 @@ def join(
     if not simulated:
         address = request.client.host if request.client else ""
         limits.count(here.db, limits.JOINING, who_hash(here.secret, address))
-    with here.db.writing():
-        arrived = entrance.enter(
-            here.db,
-            study,
-            arrival=to_store(here.secret, study, arrival.values),
-            person_key=person_key(here.secret, study, arrival.values),
-            link=arrival.link,
-            token=token_of(here.secret, study, ticket),
-            simulated=simulated,
-            language=language_of(study, wishes),
-            device={"user_agent_family": browser_family(request.headers.get("user-agent", ""))},
-        )
-        payload = _agreement(study, language_of(study, wishes), fields)
-        consents.agree(here.db, arrived.participant, payload)
+    newcomer = Newcomer(
+        arrival=to_store(here.secret, study, arrival.values),
+        person_key=person_key(here.secret, study, arrival.values),
+        link=arrival.link,
+        token=token_of(here.secret, study, ticket),
+        simulated=simulated,
+        language=language_of(study, wishes),
+        device={"user_agent_family": browser_family(request.headers.get("user-agent", ""))},
+    )
+    agreed = _agreement(study, language_of(study, wishes), fields)
+    arrived = here.db.run(lambda: entering(here.db, study, newcomer, agreed=agreed))
     return arrived.token or sign_participant(here.secret, arrived.participant.public_id)
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Final
 from fastapi import APIRouter, Query
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import arms, jobs, participants, progress, trials
+from study.data import arms, jobs, participants, steps, trials
 from study.data.participants import Participant
 from study.data.readiness import Readiness, readiness
 from study.site.access import AVisitor, Visitor, VisitorsForm, redirect, step_of, to_current
@@ -100,7 +100,7 @@ def begin(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
         size = screen if all(screen) else None
         if arms.assign(here.db, visitor.participant, screen=size) is None:
             return redirect("/preparing")
-        progress.begin(here.db, visitor.participant, key="begin", payload=facts)
+        steps.begin(here.db, visitor.participant, key="begin", payload=facts)
         participants.seen(here.db, visitor.participant, device=device if size else None)
     return to_current(here, visitor)
 

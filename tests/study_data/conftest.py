@@ -13,7 +13,7 @@ import pytest
 
 from renderer.manifest import ClipRecord, Manifest, read_manifest, write_manifest
 from renderer.sources import code_version
-from study.data import answers, arms, consents, enrolment, progress, studies, views
+from study.data import answers, arms, consents, enrolment, progress, steps, studies, views
 from study.data.database import Database, open_database
 from study.data.participants import Participant
 from study.data.studies import Study
@@ -152,19 +152,19 @@ class Walk:
         consents.give_consent(self.db, self.participant, key="consent")
 
     def about(self, **given: object) -> None:
-        progress.store_about(self.db, self.participant, given, key="about")
+        steps.store_about(self.db, self.participant, given, key="about")
 
     def to_preparing(self) -> None:
         self.consent()
         self.about()
-        progress.finish_instructions(self.db, self.participant, key="instructions")
+        steps.finish_instructions(self.db, self.participant, key="instructions")
 
     def begin(self) -> None:
         self.to_preparing()
         leased = arms.assign(self.db, self.participant, available=all_arms(self.study.definition))
         assert leased is not None
         self.participant = leased
-        progress.begin(self.db, self.participant, key="begin")
+        steps.begin(self.db, self.participant, key="begin")
 
     def watch(self, position: int, number: int = 1) -> None:
         key = f"play-{position}-{number}"

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from study.data import arms, jobs, participants, progress, studies, trials
+from study.data import arms, jobs, participants, progress, steps, studies, trials
 from study.data.database import Database
 from study.data.readiness import readiness
 from study.data.studies import Study
@@ -122,7 +122,7 @@ def test_before_the_first_trial_a_smaller_screen_gets_a_smaller_clip(
     assert first is not None
     assert smaller is not None
     assert (first.size, smaller.size) == (LARGE, SMALL)
-    progress.begin(db, smaller, key="begin")
+    steps.begin(db, smaller, key="begin")
     later = arms.assign(db, smaller, screen=(1920, 1080))
     assert later is not None
     assert later.size == SMALL

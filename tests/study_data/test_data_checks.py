@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from study.data import before, events, export, progress
+from study.data import before, events, export, progress, steps
 from study.data.angles import iris_angle, shown
 from study.data.refusals import NotReachedError
 from study.data.studies import Study
@@ -48,7 +48,7 @@ def test_checks_come_after_the_questions_and_before_the_instructions(walk: Any) 
         with pytest.raises(NotReachedError, match=f"{early} comes after what is still open"):
             store(walk, early)
     with pytest.raises(NotReachedError, match="the questions about you and the checks"):
-        progress.finish_instructions(walk.db, walk.participant, key="instructions")
+        steps.finish_instructions(walk.db, walk.participant, key="instructions")
     assert store(walk, "device_check", refresh_hz=60.0)
     assert step_of(walk) == "eyesight"
     assert store(walk, "eyesight", key="b")

@@ -10,7 +10,7 @@ import pytest
 from sqlalchemy import func, select, text
 from sqlalchemy.orm import Session
 
-from study.data import entrance, erasure, limits, links, studies
+from study.data import entrance, erasure, errands, limits, links, studies
 from study.data.database import Database
 from study.data.limits import Limit
 from study.data.schema import LimitRow, ParticipantRow, StudyRow
@@ -54,7 +54,7 @@ def test_who_withdraws_takes_their_link_before_their_name(db: Database, study: S
     waiting = text("SELECT count(*) FROM pg_stat_activity WHERE wait_event_type = 'Lock'")
     mine = select(ParticipantRow.id).where(ParticipantRow.id == person.id)
     with ThreadPoolExecutor(1) as beside, Session(db.engine) as other, other.begin():
-        entrance._unused_or_mine(other, link.token)
+        errands.look(other.connection(), lambda: entrance._unused_or_mine(link.token))
         withdrawal = beside.submit(erasure.withdraw, db, person)
         while not other.scalar(waiting):
             other.execute(select(func.pg_stat_clear_snapshot()))

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from study.data import arms, export, pauses, progress, studies, trials
+from study.data import arms, export, pauses, progress, steps, studies, trials
 from study.data.database import Database
 from study.data.refusals import NotReachedError
 from study.data.studies import Study
@@ -183,7 +183,7 @@ def test_the_order_code_of_the_tables_gives_the_trials_again(
     walk = enrol_into(study, 3)
     walk.to_preparing()
     walk.participant = arms.assign(db, walk.participant, available=all_arms(definition))
-    progress.begin(db, walk.participant, key="begin")
+    steps.begin(db, walk.participant, key="begin")
     (row,) = export.tables(db, study).participants.to_dict("records")
     told = trials_of_code(definition, read_order_code(row["order_code"], definition))
     assert [t.clip.id for t in told] == [t.clip for t in trials.all_trials(db, walk.participant)]

@@ -14,6 +14,7 @@ from study.data import (
     events,
     participants,
     progress,
+    steps,
     studies,
     trials,
 )
@@ -39,7 +40,7 @@ def test_the_steps_come_in_order(walk: Any) -> None:
     seen.append(step(walk))
     walk.about(age="33")
     seen.append(step(walk))
-    progress.finish_instructions(walk.db, walk.participant, key="instructions")
+    steps.finish_instructions(walk.db, walk.participant, key="instructions")
     seen.append(step(walk))
     walk.begin()
     while seen[-1] != "thanks":
@@ -95,9 +96,9 @@ def test_a_step_sent_twice_is_one_step(walk: Any) -> None:
     before = events.history(walk.db, walk.participant)
     repeated = [
         consents.give_consent(walk.db, walk.participant, key="consent"),
-        progress.store_about(walk.db, walk.participant, {"age": "44"}, key="about"),
-        progress.finish_instructions(walk.db, walk.participant, key="instructions"),
-        progress.begin(walk.db, walk.participant, key="begin"),
+        steps.store_about(walk.db, walk.participant, {"age": "44"}, key="about"),
+        steps.finish_instructions(walk.db, walk.participant, key="instructions"),
+        steps.begin(walk.db, walk.participant, key="begin"),
     ]
     assert [recorded.new for recorded in repeated] == [False] * 4
     assert events.history(walk.db, walk.participant) == before
@@ -108,7 +109,7 @@ def test_beginning_twice_with_different_keys_lays_out_trials_once(walk: Any) -> 
     walk.begin()
     walk.answer(1)
     mine = trials.all_trials(walk.db, walk.participant)
-    progress.begin(walk.db, walk.participant, key="begin-again")
+    steps.begin(walk.db, walk.participant, key="begin-again")
     assert trials.all_trials(walk.db, walk.participant) == mine
 
 
@@ -116,7 +117,7 @@ def test_going_back_to_an_early_page_leads_to_the_present_one(walk: Any) -> None
     walk.begin()
     walk.answer(1)
     consents.give_consent(walk.db, walk.participant, key="consent-2")
-    progress.finish_instructions(walk.db, walk.participant, key="instructions-2")
+    steps.finish_instructions(walk.db, walk.participant, key="instructions-2")
     assert step(walk) == "trial"
 
 
@@ -141,12 +142,12 @@ def test_steps_cannot_be_jumped_over(walk: Any) -> None:
     with pytest.raises(NotReachedError, match="come after the consent"):
         walk.about()
     with pytest.raises(NotReachedError, match="instructions come after"):
-        progress.finish_instructions(walk.db, walk.participant, key="i")
+        steps.finish_instructions(walk.db, walk.participant, key="i")
     with pytest.raises(NotReachedError, match="clips come after the instructions"):
-        progress.begin(walk.db, walk.participant, key="b")
+        steps.begin(walk.db, walk.participant, key="b")
     walk.to_preparing()
     with pytest.raises(NotReachedError, match="once they are ready"):
-        progress.begin(walk.db, walk.participant, key="b")
+        steps.begin(walk.db, walk.participant, key="b")
     assert step(walk) == "preparing"
 
 
@@ -157,10 +158,10 @@ def test_a_study_without_questions_about_you_goes_on_to_the_instructions(
     person = enrolment.enrol(db, other).participant
     consents.give_consent(db, person, key="c")
     assert progress.current_step(db, person).name == "instructions"
-    progress.finish_instructions(db, person, key="i")
+    steps.finish_instructions(db, person, key="i")
     leased = arms.assign(db, person, available=all_arms(other.definition))
     assert leased is not None
-    assert progress.begin(db, leased, key="b").new
+    assert steps.begin(db, leased, key="b").new
 
 
 def test_a_code_is_issued_when_every_trial_is_complete_and_not_before(
