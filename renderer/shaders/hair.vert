@@ -41,16 +41,20 @@ void main() {
     // A hair is as wide from every side; a lock lies flat and is thin at the head's outline.
     vec3 across = cross(in_tangent, LOCK > 1 ? in_position - u_middle_mm : v);
     across /= max(length(across), 1e-4);
-    float shown = max(length(across - v * dot(across, v)), 0.25);
+    vec3 beside = cross(in_tangent, v);   // across it on the picture
+    float end_on = length(beside);
+    beside /= max(end_on, 1e-4);
+    float shown = dot(across, beside);
+    if (shown < 0.0) { beside = -beside; shown = -shown; }
+    shown = max(shown, 0.25);
     float pixel_mm = distance_mm / u_pixel_per_mm;
     float kept = min(2.0 * in_ribbon.y / (u_least_px * u_pixel_mm), 1.0);
-    float half_px = in_ribbon.y * taper(in_ribbon.z) / (kept * pixel_mm);
+    float full_px = in_ribbon.y * taper(in_ribbon.z) / (kept * pixel_mm);
 
     v_shadow = in_colour.a;
-    float reach_mm = (half_px + MARGIN_PX / shown) * pixel_mm;
-    half_px *= shown;
+    float half_px = shown * full_px;
     // A lock seen end-on would be a blot.
-    if (LOCK > 1) half_px *= smoothstep(0.02, 0.2, length(cross(in_tangent, v)));
+    if (LOCK > 1) half_px *= smoothstep(0.02, 0.2, end_on);
     v_ribbon = vec4(in_ribbon.x * (half_px + MARGIN_PX), half_px, in_ribbon.z, in_ribbon.w);
     bool is_drawn = in_ribbon.w <= kept;
     bool is_black = MARK == 1 && in_colour.r == 0.0;   // a shadow
@@ -60,7 +64,10 @@ void main() {
     v_body = light.body;
     v_glint = light.glint;
 
-    vec3 p_world = in_position + across * (in_ribbon.x * reach_mm);
+    // The ribbon is drawn where its pixels are and lies as deep as the flat lock: a ribbon seen from its
+    // edge would miss most pixels' middles and break into dots.
+    vec3 reach = beside * (half_px + MARGIN_PX) + v * (dot(across, v) * full_px);
+    vec3 p_world = in_position + reach * (in_ribbon.x * pixel_mm);
     if (MARK == 1) p_world += v * SHADOW_LIFT_MM;
     gl_Position = is_drawn ? u_projection * u_view_matrix * vec4(p_world, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }

@@ -19,6 +19,9 @@ const float TEAR_F0 = 0.021;
 const float RADIUS_MM = 0.28;        // of the hollow: the normal turns by a radian over this way
 const float HEIGHT_MM = 0.35;        // of the strip, from globe to lid
 const float EDGE_SHADE = 0.10;       // what the upper edge takes away
+// Share of the strip over which it begins. On the globe the hollow has the film's own slope: what it
+// mirrors there, the film has mirrored.
+const float BEGIN = 0.4;
 // The hollow spreads sunlight that falls through it; what it loses gathers in a line along its foot
 // on the lid: how much brighter the moist lid is there.
 const float GATHERED = 0.42;
@@ -66,6 +69,7 @@ void main() {
     // Where the globe turns away the strip would mirror lids and nose, which the harmonics do not know.
     float fresnel = schlick(clamp(dot(n, v), 0.25, 1.0), TEAR_F0);
     float edge = 1.0 - smoothstep(0.0, 0.35, v_water.x);
+    fresnel *= smoothstep(0.0, BEGIN, v_water.x);
     float taken = fresnel + EDGE_SHADE * edge * (1.0 - edge) * 4.0;
     // A line narrower than a pixel fills but a part of it.
     float amount = v_water.y * min(HEIGHT_MM / u_mm_per_px, 1.0);

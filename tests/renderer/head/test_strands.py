@@ -34,17 +34,23 @@ def darkness_mm2(gl: moderngl.Context, strands: Strands, px_per_mm: float) -> fl
     return float(darkness(gl, strands, px_per_mm).sum()) / px_per_mm**2
 
 
-def darkness(gl: moderngl.Context, strands: Strands, px_per_mm: float) -> npt.NDArray[np.floating]:
+def darkness(
+    gl: moderngl.Context,
+    strands: Strands,
+    px_per_mm: float,
+    *,
+    around_mm: tuple[float, float, float] | None = None,
+) -> npt.NDArray[np.floating]:
     """Draw black hairs on white, in parallel projection from far; return what is dark, 0 to 1.
 
-    Rows run upwards from the lowest.
+    Rows run upwards from the lowest. ``around_mm`` makes locks of them that lie on a body.
     """
     target = gl.framebuffer(
         [gl.texture((SIZE_PX, SIZE_PX), 4, dtype="f2")], gl.depth_texture((SIZE_PX, SIZE_PX))
     )
     target.use()
     target.clear(1.0, 1.0, 1.0, 1.0)
-    mesh = StrandMesh(gl, strands, rng())
+    mesh = StrandMesh(gl, strands, rng(), around_mm=around_mm)
     program = strand_programs(gl)[mesh.kind]
     away_mm = 1e4
     clip = np.diag([2 * px_per_mm / SIZE_PX, 2 * px_per_mm / SIZE_PX, -1e-3, 1.0])
@@ -114,6 +120,17 @@ def test_a_hair_a_little_thicker_is_a_little_darker(gl: moderngl.Context) -> Non
     areas = [darkness_mm2(gl, straight(1, width), 6.0) for width in (0.10, 0.105, 0.11)]
     assert areas[1] / areas[0] == pytest.approx(1.05, abs=0.01)
     assert areas[2] / areas[0] == pytest.approx(1.10, abs=0.01)
+
+
+@pytest.mark.parametrize("slope", [0.03, 0.4])
+def test_a_lock_on_the_outline_is_a_line_without_gaps(gl: moderngl.Context, slope: float) -> None:
+    s = np.linspace(-0.5, 0.5, SHAFT) * 30.0
+    points = np.stack([s, slope * s, np.zeros(SHAFT)], axis=-1)[None]
+    lock = Strands(points, np.array([1.9]), np.zeros((1, 3)))
+    # It lies on a body below it: seen from the front it shows its edge.
+    across = darkness(gl, lock, 3.4, around_mm=(0.0, -100.0, 0.0)).sum(axis=0)
+    middle = across[SIZE_PX // 2 - 25 : SIZE_PX // 2 - 5]  # at its end a lock thins out
+    assert middle.min() > 0.6 * np.median(middle) > 0.3
 
 
 def test_ribbons_have_two_vertices_a_point_and_name_their_side() -> None:

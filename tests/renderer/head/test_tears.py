@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import moderngl
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from renderer.head.face_mesh import face_mesh
@@ -84,39 +85,63 @@ def test_the_line_runs_dry_before_the_canthi() -> None:
     assert tears.amount[np.abs(x) < 7.0].min() == 1.0
 
 
-def test_sun_and_sky_shine_on_it_and_little_is_taken_away(gl: moderngl.Context) -> None:
+def drawn(
+    gl: moderngl.Context,
+    irradiance: float,
+    *,
+    mm_per_px: float,
+    middle_y_mm: float,
+    ground: float = 0.4,
+) -> npt.NDArray[np.float32]:
+    """Draw the right eye's tear lines over a grey ground, from in front: (96, 96, 4) upwards."""
     program = build_program(gl, "tears.vert", fragment="tears.frag")
     line = TearLine(gl, program, fit_lids(face_mesh().sockets[1], STRAIGHT), eye=1)
     depth = gl.depth_texture((1, 1), data=np.ones(1, np.float32).tobytes())
     depth.compare_func = ""
+    harmonics = np.zeros((9, 3))
+    harmonics[0] = 0.5 / 0.282095
+    light = Light(
+        Sky(np.array([0.0, 0.6, 0.8]), np.full(3, irradiance), harmonics),
+        depth,
+        np.eye(4, dtype=np.float32),
+    )
+    half_mm = 48 * mm_per_px
     matrix = np.eye(4)
-    matrix[:3] = np.array([[1 / 6, 0, 0, -31 / 6], [0, 1 / 6, 0, 5 / 6], [0, 0, -1 / 40, 0]])
-    pictures = []
-    for irradiance in (0.0, 2.4):
-        harmonics = np.zeros((9, 3))
-        harmonics[0] = 0.5 / 0.282095
-        direction = np.array([0.0, 0.6, 0.8])
-        light = Light(
-            Sky(direction, np.full(3, irradiance), harmonics), depth, np.eye(4, dtype=np.float32)
-        )
-        target = gl.framebuffer(
-            [gl.texture((96, 96), 4, dtype="f4")], gl.depth_renderbuffer((96, 96))
-        )
-        target.use()
-        target.clear(0.4, 0.4, 0.4, 1.0)
-        line.draw(
-            u_view_matrix=np.eye(4),
-            u_projection=matrix,
-            u_camera_mm=np.array([31.0, 0.0, 170.0]),
-            u_mm_per_px=0.1,
-            **light.uniforms(),
-        )
-        pictures.append(np.frombuffer(target.read(components=4, dtype="f4"), np.float32))
-        target.release()
-    sky, sun = (picture.reshape(96, 96, 4)[..., 0] for picture in pictures)
+    matrix[0, :] = 1 / half_mm, 0, 0, -31 / half_mm
+    matrix[1, :] = 0, 1 / half_mm, 0, -middle_y_mm / half_mm
+    matrix[2, :] = 0, 0, -1 / 40, 0
+    target = gl.framebuffer([gl.texture((96, 96), 4, dtype="f4")], gl.depth_renderbuffer((96, 96)))
+    target.use()
+    target.clear(ground, ground, ground, 1.0)
+    line.draw(
+        u_view_matrix=np.eye(4),
+        u_projection=matrix,
+        u_camera_mm=np.array([31.0, 0.0, 170.0]),
+        u_mm_per_px=mm_per_px,
+        **light.uniforms(),
+    )
+    picture = np.frombuffer(target.read(components=4, dtype="f4"), np.float32)
+    target.release()
+    return picture.reshape(96, 96, 4)
+
+
+def test_sun_and_sky_shine_on_it_and_little_is_taken_away(gl: moderngl.Context) -> None:
+    pictures = [
+        drawn(gl, irradiance, mm_per_px=0.125, middle_y_mm=-5.0) for irradiance in (0.0, 2.4)
+    ]
+    sky, sun = (picture[..., 0] for picture in pictures)
     assert np.isfinite(sun).all()
     changed = np.abs(sky - 0.4) > 1e-4
     assert 0.005 < changed.mean() < 0.2
     assert sky.min() > 0.3
     assert (sun - sky).max() > 0.1  # a glint
-    assert pictures[0].reshape(-1, 4)[:, 3].min() > 0.999
+    assert pictures[0][..., 3].min() > 0.999
+
+
+def test_the_line_begins_softly_on_the_globe(gl: moderngl.Context) -> None:
+    """The hollow meets the film at its own slope: no edge is there to be mirrored."""
+    shine = drawn(gl, 0.0, mm_per_px=0.02, middle_y_mm=3.4, ground=0.0)[..., 0]
+    columns = [column[column > 0.0] for column in shine.T if column.max() > 0.0]
+    assert len(columns) > 80
+    # Rows run upwards, from the globe to the upper lid.
+    assert np.median([column[0] / column.max() for column in columns]) < 0.2
