@@ -20,7 +20,7 @@ from renderer.clip import ClipSpec
 from renderer.context import is_software
 from renderer.detail import LEVELS, Detail
 from renderer.frame import FrameRenderer
-from renderer.lod.path import Shares, places_of_view, shares_of
+from renderer.lod.path import Places, Shares, places_of_view, shares_of
 from renderer.picture import Pixels
 from renderer.studio import Studio
 
@@ -49,7 +49,8 @@ class Shot:
 
     ``pixels`` (height, width, 3) uint8 sRGB; ``frame_ms`` until the finished frame was there, on a
     GPU its own clock; ``triangles`` of everything drawn, all passes, outlines too; ``iris_px`` and
-    ``visible_px`` per eye, left and right; ``lods`` what each eye is drawn with.
+    ``visible_px`` per eye, left and right, the same for wire frames; ``lods`` what each eye is
+    drawn with.
     """
 
     pixels: Pixels
@@ -76,7 +77,6 @@ class Inspector:
     def shot(self, spec: ClipSpec, viewpoint: Viewpoint) -> Shot:
         """Draw the eyes of a clip from a viewpoint."""
         renderer = self._renderer(at_least_as_sharp(spec, viewpoint.distance_px), viewpoint.eyes)
-        renderer.wireframe = viewpoint.wireframe
         shown = views(
             spec,
             viewpoint.azimuth_deg,
@@ -84,7 +84,13 @@ class Inspector:
             distance_px=viewpoint.distance_px,
             eyes=viewpoint.eyes,
         )
-        return self._draw(renderer, shown, viewpoint)
+        renderer.wireframe = False
+        if not viewpoint.wireframe:
+            return self._draw(renderer, shown, viewpoint)
+        # Lines cover few pixels: what is seen of an eye is counted on the eye itself.
+        seen = renderer.render_views(shown, places=_places(renderer, viewpoint)).visible_px
+        renderer.wireframe = True
+        return replace(self._draw(renderer, shown, viewpoint), visible_px=seen)
 
     def overhead(self, spec: ClipSpec, viewpoint: Viewpoint) -> Shot:
         """Draw the whole scene from above, everybody in it, at the viewpoint's time.
@@ -107,7 +113,7 @@ class Inspector:
 
     def _draw(self, renderer: FrameRenderer, shown: tuple[View, ...], viewpoint: Viewpoint) -> Shot:
         spec, gl = renderer.spec, self._studio.gl
-        places = places_of_view(spec, viewpoint.azimuth_deg, distance_px=viewpoint.distance_px)
+        places = _places(renderer, viewpoint)
         counted = gl.query(time=True, primitives=True)
         gl.finish()
         started = time.perf_counter()
@@ -144,6 +150,11 @@ def at_least_as_sharp(spec: ClipSpec, distance_px: float) -> ClipSpec:
     if spec.cube_size == "auto" and distance_px > IRIS_PX[spec.distance]:
         return replace(spec, cube_size="table")
     return spec
+
+
+def _places(renderer: FrameRenderer, viewpoint: Viewpoint) -> Places | None:
+    """Return where eyes that switch stand between a policy's steps."""
+    return places_of_view(renderer.spec, viewpoint.azimuth_deg, distance_px=viewpoint.distance_px)
 
 
 def _named(shares: Shares) -> str:
