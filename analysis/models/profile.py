@@ -43,12 +43,15 @@ def _end(found: OrdinalFit, target: Objective, place: int, limit: float, side: f
     """Return where the profile crosses the limit on one side."""
     error = float(np.sqrt(found.covariance[place, place]))
     centre = float(found.parameters[place])
-    last = found.parameters.copy()
+    known: dict[float, tuple[float, Floats]] = {}
 
     def excess(steps: float) -> float:
-        nonlocal last
-        value, last = _profiled(found, target, place, centre + side * steps * error, last)
-        return value - limit
+        if steps not in known:
+            # From the nearest place on the fit's side: from beyond, the way back may end elsewhere.
+            inner = max((own for own in known if own < steps), default=None)
+            start = found.parameters if inner is None else known[inner][1]
+            known[steps] = _profiled(found, target, place, centre + side * steps * error, start)
+        return known[steps][0] - limit
 
     near, far = 0.0, 2.0
     while excess(far) < 0:

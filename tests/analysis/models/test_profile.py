@@ -12,8 +12,9 @@ from scipy.special import ndtr, ndtri
 from analysis.models.counts import Counts, count_answers
 from analysis.models.fitting import fit
 from analysis.models.links import LOGIT, PROBIT, Link
-from analysis.models.ordinal import LENIENCY, OrdinalModel
+from analysis.models.ordinal import LENIENCY, PERSON_EFFECTS, OrdinalModel
 from analysis.models.predictors import Linear
+from analysis.models.priors import PRIORS
 from analysis.models.profile import profile_interval
 
 sys.path.append(str(Path(__file__).parent))
@@ -81,5 +82,20 @@ def test_what_is_not_bounded_is_infinite() -> None:
         profile_interval(fit(model, Counts(table)), "low")
 
 
+def test_the_way_back_from_beyond_does_not_lead_astray() -> None:
+    """Three people of very different scatter: the likelihood has a second, lower top."""
+    rng = np.random.default_rng(5)
+    who, what = np.repeat(np.arange(3), 32), np.tile(np.arange(16), 6)
+    scatter = np.array([0.3, 1.0, 3.0])[who]
+    place = rng.normal(0, 0.3, 16)
+    percept = place[what] + scatter * rng.standard_normal(who.size)
+    answer = np.searchsorted([-1.3, -0.3, 0.8, 1.8], percept)
+    cells = Linear(np.eye(16)[:, 1:], tuple(f"cell {i}" for i in range(1, 16)))
+    counts = count_answers(who, what, answer, shape=(3, 16, 5))
+    found = fit(OrdinalModel(cells, 5, PERSON_EFFECTS), counts, priors=PRIORS)
+    low, high = profile_interval(found, "log_sd:leniency")
+    assert low < found.value("log_sd:leniency") < high
+
+
 def _log(hits: int, misses: int, share: float) -> float:
-    return hits * np.log(share) + misses * np.log(1 - share)
+    return float(hits * np.log(share) + misses * np.log(1 - share))
