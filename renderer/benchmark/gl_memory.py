@@ -14,7 +14,7 @@ from typing import Final
 
 import moderngl
 
-from renderer.park.cube_maps import gl_function
+from renderer.gl.functions import gl_function
 
 LARGEST_NAME: Final = 20_000  # names are given out from 1 upwards
 LARGEST_LEVEL: Final = 16

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.light import Sky
-from renderer.park.cube_maps import face_directions
+from renderer.park.cube_faces import face_directions
 from renderer.park.environments import project_to_sh
 
 Array = npt.NDArray[np.float64]

@@ -16,7 +16,8 @@ import numpy.typing as npt
 from renderer.camera import perspective
 from renderer.crowd.crowd import Crowd
 from renderer.crowd.stage import GROUND_MM
-from renderer.park.cube_maps import FACE_AXES, CubeTarget, Rectangle, face_view
+from renderer.park.cube_faces import FACE_AXES, face_view
+from renderer.park.cube_target import CubeTarget, Rectangle
 
 Floats = npt.NDArray[np.float64]
 Tiles = npt.NDArray[np.bool_]

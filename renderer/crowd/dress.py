@@ -12,7 +12,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from renderer.body.makehuman import Floats, Indices, base_mesh, target_offsets
+from renderer.body.makehuman import Floats, Indices, base_mesh
+from renderer.body.phenotype import target_offsets
 from renderer.crowd.people import Colour, Person
 
 # Height of the hairline on the base mesh over depth: nape, behind and above the ear, temple, brow.
@@ -20,6 +21,7 @@ _HAIRLINE: Final = (
     (-60.0, 0.0, 12.0, 30.0, 60.0, 95.0, 120.0, 145.0),
     (668.0, 690.0, 742.0, 742.0, 768.0, 788.0, 796.0, 800.0),
 )
+NECK_MM: Final = 500.0  # edges of clothes that lie higher are collars
 PARTS: Final = ("skin", "hair", "top", "bottom", "shoes", "eyes", "brows")
 
 
@@ -27,7 +29,8 @@ PARTS: Final = ("skin", "hair", "top", "bottom", "shoes", "eyes", "brows")
 class Piece:
     """A part of a body: base vertices pushed outwards and coloured, thinned to ``target``.
 
-    ``part`` is the one of PARTS whose colour it has.
+    ``part`` is the one of PARTS whose colour it has. Open edges that lie higher than
+    ``turned_in_above_mm`` on the base mesh are turned in to the body.
     """
 
     part: str
@@ -38,6 +41,7 @@ class Piece:
     importance: Floats | None = None
     shift_mm: Floats | None = None
     is_two_sided: bool = False
+    turned_in_above_mm: float | None = None
 
 
 def pieces(person: Person) -> list[Piece]:
@@ -59,12 +63,21 @@ def pieces(person: Person) -> list[Piece]:
     is_covered = (_beyond_sleeve(cloth, person) < 0) & ~_is_collar()
     is_shoe = cloth[:, 1] < -765
     still = np.zeros(n)
+    # The helper stands off the neck as it is.
     loose = 9.0 + 5.0 * np.clip((300 - base[:, 1]) / 300, 0, 1)
+    loose -= 9.0 * np.clip((base[:, 1] - 510) / 70, 0, 1)
     trousers = 5.0 + 7.0 * np.clip((-250 - base[:, 1]) / 300, 0, 1)
     found = [
         Piece("skin", body[is_head], still, skin, 1900, _face_detail(base)),
         Piece("skin", body[is_hand], still, skin, 560),
-        Piece("top", tights[is_top & is_covered], loose, _flat(person.top, n), 1000),
+        Piece(
+            "top",
+            tights[is_top & is_covered],
+            loose,
+            _flat(person.top, n),
+            1000,
+            turned_in_above_mm=NECK_MM,
+        ),
         Piece("bottom", tights[~is_top & ~is_shoe], trousers, _flat(person.bottom, n), 560),
         Piece("shoes", tights[is_shoe], np.full(n, 9.0), _flat(person.shoes, n), 160),
         _scalp(person, base, body),
@@ -147,24 +160,26 @@ def _scalp(person: Person, base: Floats, body: Indices) -> Piece:
     row = np.interp(centre[:, 2], *_HAIRLINE)
     is_hair = (centre[:, 1] > row) & (np.abs(centre[:, 0]) < 90)
     lumps = 1 + 0.12 * np.sin(base @ [0.19, 0.07, 0.13]) * np.sin(base @ [-0.11, 0.23, 0.17])
-    push = (4.0 + 9.0 * np.clip(above / 45, 0, 1) ** 0.7) * lumps
+    push = (1.5 + 11.5 * np.clip(above / 45, 0, 1) ** 0.7) * lumps
     streaks = 1 + 0.18 * np.sin(base @ [0.9, 0.2, 0.35])
     surface = _flat(person.hair, len(base))
     surface[:, :3] *= streaks[:, None]
-    return Piece(
-        "hair", body[is_hair], push, surface, 420, shift_mm=_snap(base, body[is_hair], above)
-    )
+    return Piece("hair", body[is_hair], push, surface, 420, shift_mm=_snap(base, body[is_hair]))
 
 
-def _snap(base: Floats, triangles: Indices, above: Floats) -> Floats:
+def _snap(base: Floats, triangles: Indices) -> Floats:
     """Return shifts (n, 3) that bring the rim of the hair on the hairline: no jags."""
-    edges, counts = np.unique(
-        np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1), axis=0, return_counts=True
-    )
-    rim = np.unique(edges[counts == 1])
+    rim = np.unique(open_edges(triangles))
     shift = np.zeros_like(base)
-    shift[rim, 1] = -np.clip(above[rim], -12, 12)
-    return shift
+    for _ in range(4):  # the shortest way there, sideways where the line is steep
+        y, z = (base[rim] + shift[rim]).T[1:]
+        above = y - np.interp(z, *_HAIRLINE)
+        slope = (np.interp(z + 1, *_HAIRLINE) - np.interp(z - 1, *_HAIRLINE)) / 2
+        step = -above / (1 + slope * slope)
+        shift[rim, 1] += step
+        shift[rim, 2] -= slope * step
+    length = np.linalg.norm(shift, axis=1, keepdims=True)
+    return np.asarray(shift * np.minimum(1.0, 25.0 / np.maximum(length, 1e-9)))
 
 
 def _long_hair(person: Person, base: Floats) -> Piece:

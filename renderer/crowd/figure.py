@@ -13,11 +13,13 @@ from typing import Final
 import numpy as np
 
 from renderer.body.decimate import decimate
-from renderer.body.makehuman import Floats, Indices, base_mesh, phenotype, target_offsets
+from renderer.body.makehuman import Floats, Indices, base_mesh
 from renderer.body.normals import vertex_normals
+from renderer.body.phenotype import phenotype, target_offsets
 from renderer.body.rig import Rig, fit_rig
 from renderer.crowd.dress import PARTS, Piece, pieces
 from renderer.crowd.face_parts import FacePart, brows, eyes
+from renderer.crowd.hems import hem
 from renderer.crowd.people import Person
 
 BONES: Final = (
@@ -108,13 +110,15 @@ def _thin(shape: Floats, piece: Piece) -> tuple[Indices, Floats, Floats, Floats,
     normals = vertex_normals(positions, triangles)
     kept, compact = np.unique(fewer, return_inverse=True)
     whole = compact.reshape(-1, 3)
-    return (
-        used[kept],
-        positions[kept],
-        normals[kept],
-        piece.surface[used[kept]],
-        np.concatenate([whole, whole[:, ::-1]]) if piece.is_two_sided else whole,
-    )
+    rows, positions, normals = used[kept], positions[kept], normals[kept]
+    if piece.turned_in_above_mm is not None:
+        is_hem = base_mesh().vertices_mm[rows, 1] > piece.turned_in_above_mm
+        again, places, facing, more = hem(positions, normals, whole, is_hem=is_hem)
+        rows = np.concatenate([rows, rows[again]])
+        positions, normals = np.concatenate([positions, places]), np.concatenate([normals, facing])
+        whole = np.concatenate([whole, more])
+    both = np.concatenate([whole, whole[:, ::-1]]) if piece.is_two_sided else whole
+    return rows, positions, normals, piece.surface[rows], both
 
 
 @functools.cache

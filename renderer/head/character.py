@@ -12,7 +12,8 @@ from typing import Final
 
 import numpy as np
 
-from renderer.body.makehuman import Floats, Mesh, base_mesh, phenotype, target_offsets
+from renderer.body.makehuman import Floats, Mesh, base_mesh
+from renderer.body.phenotype import phenotype, target_offsets
 from renderer.body.rig import Rig, fit_rig, pose_vertices, rotation
 from renderer.camera import INTEROCULAR_MM
 

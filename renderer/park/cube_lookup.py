@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from renderer.park.cube_maps import FACE_AXES
+from renderer.park.cube_faces import FACE_AXES
 
 Array = npt.NDArray[np.float64]
 

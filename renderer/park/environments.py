@@ -15,7 +15,7 @@ import numpy.typing as npt
 from renderer.cache import cached_arrays
 from renderer.clip import ClipSpec
 from renderer.light import Sky, Vector
-from renderer.park.cube_maps import FACE_AXES, face_directions, read_face
+from renderer.park.cube_faces import FACE_AXES, face_directions, read_face
 from renderer.park.image import ImageEnvironment, load_environment
 from renderer.park.sky import clear_sky
 from renderer.park.skyline import park_skyline

@@ -10,14 +10,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from renderer.park.panorama import (
-    Building,
-    Panorama,
-    Tree,
-    leaf_stamps,
-    paint_building,
-    paint_tree,
-)
+from renderer.park.buildings import Building, paint_building
+from renderer.park.panorama import Panorama
+from renderer.park.trees import Tree, leaf_stamps, paint_tree
 
 
 def park_skyline(seed: int = 7) -> dict[str, npt.NDArray[np.uint8]]:

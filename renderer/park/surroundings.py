@@ -18,8 +18,9 @@ import numpy.typing as npt
 from renderer.camera import IRIS_PX, radius_of_px
 from renderer.clip import ClipSpec
 from renderer.light import Sky
+from renderer.park.cube_faces import FACE_AXES, read_face
 from renderer.park.cube_lookup import halve
-from renderer.park.cube_maps import FACE_AXES, CubeTarget, read_face
+from renderer.park.cube_target import CubeTarget
 from renderer.park.environments import AMBIENT_PX, Environment, make_environment
 from renderer.program import build_program
 

@@ -69,7 +69,7 @@ float lash_cover(vec3 at, vec3 d_eye, float room_mm, float reach_mm) {
 }
 
 // What lets a ray pass: x 1 between the lids, 0 where it meets one; y 1 past the lashes.
-// renderer/eye/chamber.py, lid_openness, says the same without lashes: it gathers whole skies.
+// renderer/eye/lids.py, lid_openness, says the same without lashes: it gathers whole skies.
 vec2 past_lids_and_lashes(vec3 p_eye, vec3 d_eye, float softness_mm) {
     float along = dot(p_eye, d_eye);
     float excess = dot(p_eye, p_eye) - LID_FRONT_MM * LID_FRONT_MM;

@@ -1,4 +1,4 @@
-"""MakeHuman's data: units, groups, targets, phenotypes, and the message when it is absent."""
+"""MakeHuman's data: units, groups, and the message when it is absent."""
 
 from __future__ import annotations
 
@@ -38,46 +38,6 @@ def test_left_of_the_character_is_plus_x() -> None:
 def test_an_unknown_group_names_the_known_ones() -> None:
     with pytest.raises(ValueError, match=r"no group helper-hat; choose from .*helper-tights"):
         makehuman.base_mesh().quads_of("helper-hat")
-
-
-def test_a_target_moves_only_its_own_vertices_in_proportion() -> None:
-    whole = makehuman.target_offsets({"faceunits/eyeBlinkLeft": 1.0})
-    half = makehuman.target_offsets({"faceunits/eyeBlinkLeft": 0.5})
-    np.testing.assert_allclose(half * 2, whole)
-    moved = np.flatnonzero(np.abs(whole).max(axis=1) > 3.0)
-    assert 20 < len(moved) < 1000
-    assert np.median(makehuman.base_mesh().vertices_mm[moved, 0]) > 20
-
-
-def test_an_unknown_target_is_an_error_with_examples() -> None:
-    with pytest.raises(ValueError, match=r'unknown target "nose/long"; choose .*eyeBlinkLeft'):
-        makehuman.target_offsets({"nose/long": 1.0})
-
-
-def test_men_are_taller_and_the_height_property_works() -> None:
-    base = makehuman.base_mesh()
-    body = base.vertices_of("body")
-
-    def stature(**values: float) -> float:
-        vertices = base.vertices_mm + makehuman.phenotype(**values)
-        return float(np.ptp(vertices[body, 1]))
-
-    assert stature(gender=1.0) > stature(gender=0.0) + 50
-    assert stature(height=0.8) > stature(height=0.5) + 30
-
-
-def test_a_phenotype_between_anchors_is_their_mixture() -> None:
-    ends = [makehuman.phenotype(gender=value) for value in (0.0, 1.0)]
-    np.testing.assert_allclose(
-        makehuman.phenotype(gender=0.25), 0.75 * ends[0] + 0.25 * ends[1], atol=1e-9
-    )
-
-
-def test_phenotype_faults_are_named() -> None:
-    with pytest.raises(ValueError, match=r"unknown tallness; choose from gender, age"):
-        makehuman.phenotype(tallness=1.0)
-    with pytest.raises(ValueError, match=r"age = 1.5 lies outside 0 to 1"):
-        makehuman.phenotype(age=1.5)
 
 
 def test_an_absent_package_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:

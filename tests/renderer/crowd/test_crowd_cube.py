@@ -7,7 +7,7 @@ from renderer.crowd.crowd import Crowd
 from renderer.crowd.cube import TILES, CrowdCube, cover, touched_tiles
 from renderer.detail import Detail
 from renderer.light import Light, Sky
-from renderer.park.cube_maps import FACE_AXES, face_directions, read_face
+from renderer.park.cube_faces import FACE_AXES, face_directions, read_face
 
 SPEC = ClipSpec(left=Detail.uniform("ultra"), right=Detail.uniform("ultra"))
 SUN = np.array([-0.44, 0.64, 0.63]) / np.linalg.norm([-0.44, 0.64, 0.63])

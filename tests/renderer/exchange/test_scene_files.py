@@ -23,7 +23,8 @@ from renderer.exchange.scene_files import write_scene
 from renderer.frame import FrameRenderer
 from renderer.iris.pigment import linear_to_srgb
 from renderer.iris.source import iris_of
-from renderer.park.cube_maps import FACE_AXES, CubeTarget
+from renderer.park.cube_faces import FACE_AXES
+from renderer.park.cube_target import CubeTarget
 from renderer.park.lat_long import sh_of_lat_long
 from renderer.scene import Scene
 

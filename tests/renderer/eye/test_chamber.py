@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from renderer.eye.anatomy import CORNEA_IOR
-from renderer.eye.chamber import Radiance, chamber_irradiance, chamber_window, lid_openness
-from renderer.eye.lids import LidRims
+from renderer.eye.chamber import Radiance, chamber_irradiance
+from renderer.eye.chamber_rays import chamber_window
+from renderer.eye.lids import LidRims, lid_openness
 from renderer.spherical_harmonics import sh_basis
 
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
-from renderer.eye.chamber import lid_openness
-from renderer.eye.lids import LidRims
+from renderer.eye.lids import LidRims, lid_openness
 from renderer.head.corner_light import light_corner, past_lids
 from renderer.head.face_mesh import face_mesh
 from renderer.head.lid_pose import STRAIGHT, LidPose

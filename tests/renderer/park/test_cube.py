@@ -2,15 +2,9 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.park.cube_maps import (
-    FACE_AXES,
-    FACES,
-    CubeTarget,
-    face_directions,
-    face_view,
-    gl_function,
-    read_face,
-)
+from renderer.gl.functions import gl_function
+from renderer.park.cube_faces import FACE_AXES, FACES, face_directions, face_view, read_face
+from renderer.park.cube_target import CubeTarget
 
 COLOURS = [(1, 0, 0), (0, 1, 1), (0, 1, 0), (1, 0, 1), (0, 0, 1), (1, 1, 0)]
 LOOK_UP = """

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from renderer.park.cube_faces import face_directions
 from renderer.park.cube_lookup import halve, look_up
-from renderer.park.cube_maps import face_directions
 
 
 def pattern(directions: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.exchange.exr import write_exr
-from renderer.park.cube_maps import read_face
+from renderer.park.cube_faces import read_face
 from renderer.park.image import irradiance, light_from, load_environment, read_environment
 from renderer.park.lat_long import lat_long_directions, sh_of_lat_long, solid_angles
 from renderer.park.sky import LUMINANCE

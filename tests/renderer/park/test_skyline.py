@@ -3,7 +3,8 @@ import hashlib
 import numpy as np
 import pytest
 
-from renderer.park.panorama import LOWEST_DEG, STEP_DEG, WIDTH, Building, Panorama, paint_building
+from renderer.park.buildings import Building, paint_building
+from renderer.park.panorama import LOWEST_DEG, STEP_DEG, WIDTH, Panorama
 from renderer.park.skyline import park_skyline
 from renderer.textures.tiling import tiling_noise
 

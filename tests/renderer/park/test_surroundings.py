@@ -5,7 +5,7 @@ import pytest
 from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.park.cube_maps import face_directions, read_face
+from renderer.park.cube_faces import face_directions, read_face
 from renderer.park.environments import project_to_sh
 from renderer.park.sky import LUMINANCE, clear_sky
 from renderer.park.surroundings import Surroundings, level_count

@@ -1,35 +1,20 @@
-"""Cube maps that are drawn into: faces, levels, attachment, smaller levels.
+"""A cube map that is drawn into: its faces as targets, and its smaller levels.
 
-moderngl accepts no face of a cube as a target, so the faces are attached through OpenGL itself
-(ctypes). Face order and orientation: OpenGL 4.3 core, table 8.18.
+moderngl accepts no face of a cube as a target, so the faces are attached through OpenGL itself.
 """
 
 from __future__ import annotations
 
 import ctypes
-import functools
-from collections.abc import Callable, Iterable
-from typing import Any, Final
+from collections.abc import Iterable
+from typing import Final
 
 import moderngl
-import numpy as np
-import numpy.typing as npt
+
+from renderer.gl.functions import gl_function
+from renderer.park.cube_faces import FACES
 
 Rectangle = tuple[int, int, int, int]
-
-FACES: Final = ("+x", "-x", "+y", "-y", "+z", "-z")
-# Columns: right (s grows), down (t grows), forward (major axis).
-FACE_AXES: Final = tuple(
-    np.array(rows, dtype=float).T
-    for rows in (
-        [[0, 0, -1], [0, -1, 0], [1, 0, 0]],
-        [[0, 0, 1], [0, -1, 0], [-1, 0, 0]],
-        [[1, 0, 0], [0, 0, 1], [0, 1, 0]],
-        [[1, 0, 0], [0, 0, -1], [0, -1, 0]],
-        [[1, 0, 0], [0, -1, 0], [0, 0, 1]],
-        [[-1, 0, 0], [0, -1, 0], [0, 0, -1]],
-    )
-)
 
 _FRAMEBUFFER: Final = 0x8D40
 _READ_FRAMEBUFFER: Final = 0x8CA8
@@ -45,41 +30,6 @@ _RGBA: Final = 0x1908
 _HALF_FLOAT: Final = 0x140B
 _TEXTURE0: Final = 0x84C0
 _SPARE_UNIT: Final = 15  # no program of ours uses so many textures
-
-
-@functools.cache
-def gl_function(name: str, *arguments: Any, result: Any = None) -> Callable[..., Any]:
-    """Return an OpenGL function by name with ctypes' argument types.
-
-    Raises RuntimeError that names the libraries when neither EGL nor libGL offers it.
-    """
-    prototype = ctypes.CFUNCTYPE(result, *arguments)
-    try:
-        egl = ctypes.CDLL("libEGL.so.1")
-        egl.eglGetProcAddress.restype = ctypes.c_void_p
-        egl.eglGetProcAddress.argtypes = [ctypes.c_char_p]
-        address = egl.eglGetProcAddress(name.encode())
-        if address:
-            return prototype(address)
-    except OSError:
-        pass
-    for library in ("libOpenGL.so.0", "libGL.so.1"):
-        try:
-            return prototype((name, ctypes.CDLL(library)))
-        except (OSError, AttributeError):
-            continue
-    raise RuntimeError(
-        f"{name}: not found through libEGL.so.1, libOpenGL.so.0 or libGL.so.1; install the OpenGL "
-        "libraries, on Debian: apt-get install libegl1 libgl1"
-    )
-
-
-def face_view(face: int) -> npt.NDArray[np.float64]:
-    """Return the 4 x 4 world-to-camera matrix of a face seen from the origin, t upwards."""
-    right, down, forward = FACE_AXES[face].T
-    matrix = np.eye(4)
-    matrix[:3, :3] = right, down, -forward
-    return matrix
 
 
 class CubeTarget:
@@ -200,18 +150,3 @@ def _shrunk(rectangle: Rectangle, level: int, side: int) -> Rectangle:
     right = min(side, ((x + width - 1) >> level) + 1)
     high = min(side, ((y + height - 1) >> level) + 1)
     return left, low, max(0, right - left), max(0, high - low)
-
-
-def read_face(texture: moderngl.TextureCube, face: int) -> npt.NDArray[np.float32]:
-    """Read a face of an RGBA16F cube map as (size, size, 4) float32, rows in texture order."""
-    size = texture.size[0]
-    pixels = np.frombuffer(texture.read(face), dtype=np.float16)
-    return pixels.reshape(size, size, 4).astype(np.float32)
-
-
-def face_directions(size: int, face: int) -> npt.NDArray[np.float64]:
-    """Return the unit directions (size, size, 3) of a face's texels, rows in texture order."""
-    centres = (np.arange(size) + 0.5) / size * 2 - 1
-    s, t = np.meshgrid(centres, centres)
-    directions = np.stack([s, t, np.ones_like(s)], axis=-1) @ FACE_AXES[face].T
-    return np.asarray(directions / np.linalg.norm(directions, axis=-1, keepdims=True))
