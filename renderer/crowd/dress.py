@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices, base_mesh
 from renderer.body.phenotype import target_offsets
+from renderer.crowd.hems import open_edges
 from renderer.crowd.people import Colour, Person
 
 # Height of the hairline on the base mesh over depth: nape, behind and above the ear, temple, brow.
@@ -65,7 +66,7 @@ def pieces(person: Person) -> list[Piece]:
     still = np.zeros(n)
     # The helper stands off the neck as it is.
     loose = 9.0 + 5.0 * np.clip((300 - base[:, 1]) / 300, 0, 1)
-    loose -= 9.0 * np.clip((base[:, 1] - 510) / 70, 0, 1)
+    loose -= 6.0 * np.clip((base[:, 1] - 530) / 50, 0, 1)
     trousers = 5.0 + 7.0 * np.clip((-250 - base[:, 1]) / 300, 0, 1)
     found = [
         Piece("skin", body[is_head], still, skin, 1900, _face_detail(base)),
