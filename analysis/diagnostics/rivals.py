@@ -1,4 +1,4 @@
-"""Models beside the report's own: people all alike, people who differ, ratings as a metric scale.
+"""Models beside the report's own: people all alike or who differ, another link, a metric scale.
 
 By AIC on maximum likelihood, without priors; and by how well each foretells the ratings of a person
 left out, with them.
@@ -6,6 +6,7 @@ left out, with them.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -17,6 +18,7 @@ from analysis.diagnostics.metric_rival import MetricRival
 from analysis.estimates.realism import Realism
 from analysis.models.fitting import OrdinalFit, Problem, fit
 from analysis.models.grids import thinned
+from analysis.models.links import LOGIT
 from analysis.models.optimum import climb
 from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE, OrdinalModel
 from analysis.models.priors import LOOSE, PRIORS
@@ -24,6 +26,7 @@ from analysis.models.quadrature import normal_grid
 
 Floats = NDArray[np.float64]
 ALIKE, A0, A, METRIC = "people alike", "leniency", "leniency, scatter and style", "metric scale"
+LOGISTIC = "leniency, logit link"
 _EFFECTS: Final[dict[str, tuple[str, ...]]] = {
     ALIKE: (),
     A0: (LENIENCY,),
@@ -43,10 +46,12 @@ def rivals(realism: Realism) -> pd.DataFrame:
     """Compare the models on the ratings; columns are COLUMNS.
 
     ``left_out`` is the log probability of ratings of people left out, its difference that from the
-    report's own model with a standard error over people. A model that was not fitted is empty and
+    report's own model with a standard error over people; the logit link, whose latent unit the
+    priors are not made for, is compared by AIC alone. A model that was not fitted is empty and
     its ``note`` says why. Weights are the report's.
     """
     fits = {name: _fitted(realism, effects) for name, effects in _EFFECTS.items()}
+    fits[LOGISTIC] = _logistic(fits[A0])
     often = _often(realism)
     metric = MetricRival(realism.fit.model.predictor, realism.fit.counts, often)
     logs = _left_out(realism, fits, metric)
@@ -91,17 +96,31 @@ def _fitted(realism: Realism, effects: tuple[str, ...]) -> OrdinalFit | None:
     return problem.finish(grid, best, [])
 
 
+def _logistic(probit: OrdinalFit | None) -> OrdinalFit | None:
+    """Fit people's leniency with the logit link, from the probit's fit in the logit's unit."""
+    if probit is None:
+        return None
+    model = replace(probit.model, link=LOGIT)
+    start = probit.parameters.copy()
+    for place, kind in enumerate(model.kinds):
+        is_log = kind.startswith("log_")
+        start[place] = start[place] + np.log(LOGIT.sd) if is_log else start[place] * LOGIT.sd
+    start[[i for i, kind in enumerate(model.kinds) if kind == "contrast"]] /= LOGIT.sd
+    return fit(model, probit.counts, priors=LOOSE, weights=probit.weights, start=start)
+
+
 def _best(found: OrdinalFit) -> float:
     """Return the greatest log-likelihood, without priors, from a fit that has them."""
     counts = found.counts
     work = counts.people * counts.stimuli * counts.categories * found.grid.log_weights.size
-    if work <= _QUICK:
+    if work <= _QUICK and found.priors is not LOOSE:
         problem = Problem(found.model, counts, LOOSE, found.weights)
         target = problem.target(found.grid)
         best = climb(target, found.parameters, inverse=found.covariance)[0]
         return problem.value(best, found.grid)[0]
-    # So many answers that the priors hardly matter: to second order of what they do.
-    means, sds = np.array([PRIORS[kind] for kind in found.model.kinds]).T
+    # Priors so wide, or so many answers, that they hardly matter: to second order of what they do.
+    priors = found.priors or LOOSE
+    means, sds = np.array([priors[kind] for kind in found.model.kinds]).T
     pull = (found.parameters - means) / sds**2
     return float(found.log_likelihood + 0.5 * pull @ found.covariance @ pull)
 
@@ -122,7 +141,8 @@ def _left_out(
 ) -> dict[str, Floats]:
     if realism.fit.counts.people < FEWEST:
         return {}
-    found = {name: left_out(own) for name, own in fits.items() if own is not None}
+    own = {name: found for name, found in fits.items() if name != LOGISTIC}
+    found = {name: left_out(fitted) for name, fitted in own.items() if fitted is not None}
     return found | {METRIC: metric.left_out()}
 
 

@@ -35,7 +35,7 @@ def rivals_table(found: pd.DataFrame) -> ReportTable:
         f"the others, with priors{f' ({how})' if how else ''}; more is better, ± one standard "
         "error over people. The metric scale (Gaussian, random intercept, as lmer or MixedLM) has "
         "a density, which no probability can be compared with; a rating counts here as all that "
-        "rounds to it."
+        "rounds to it. The logit link goes by AIC alone: priors are made for the probit's unit."
     )
     head = ("people differ in", "parameters", "log-likelihood", "AIC", "above the least")
     return ReportTable(
@@ -149,7 +149,7 @@ def _rival(row: Mapping[str, Any]) -> tuple[str, ...]:
     name = {"people alike": "nothing"}.get(name, name)
     if row["note"]:
         return (name, str(row["note"]), *[_NONE] * 5)
-    left = number(row["left_out"], digits=1)
+    left = _NONE if pd.isna(row["left_out"]) else number(row["left_out"], digits=1)
     away, error = row["left_out_difference"], row["left_out_error"]
     against = _NONE if pd.isna(away) or row["is_reported"] else f"{number(away, digits=1)} ± "
     return (

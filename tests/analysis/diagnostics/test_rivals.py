@@ -10,7 +10,17 @@ import pandas as pd
 import pytest
 
 from analysis.diagnostics.left_out import left_out
-from analysis.diagnostics.rivals import A0, ALIKE, COLUMNS, EXPANSION, METRIC, REFITS, A, rivals
+from analysis.diagnostics.rivals import (
+    A0,
+    ALIKE,
+    COLUMNS,
+    EXPANSION,
+    LOGISTIC,
+    METRIC,
+    REFITS,
+    A,
+    rivals,
+)
 from analysis.estimates.realism import Realism, realism_of
 from analysis.models.counts import Counts
 from analysis.models.fitting import fit
@@ -34,7 +44,8 @@ def test_wine_has_the_log_likelihood_and_aic_that_r_finds() -> None:
         "f <- clm(rating ~ temp * contact, data = wine, link = 'probit')\n"
         "g <- clmm2(rating ~ temp * contact, random = judge, data = wine, Hess = TRUE,"
         " nAGQ = 10, link = 'probit')\n"
-        "wine$alike <- logLik(f); wine$alike_aic <- AIC(f)\n"
+        "h <- clmm2(rating ~ temp * contact, random = judge, data = wine, nAGQ = 10)\n"
+        "wine$logit <- logLik(h); wine$alike <- logLik(f); wine$alike_aic <- AIC(f)\n"
         "wine$judges <- logLik(g); wine$judges_aic <- AIC(g); write.csv(wine)"
     )
     lods = wine[["temp", "contact"]].agg("-".join, axis=1)
@@ -45,6 +56,8 @@ def test_wine_has_the_log_likelihood_and_aic_that_r_finds() -> None:
     assert found.loc[ALIKE, "aic"] == pytest.approx(wine["alike_aic"][0], abs=2e-3)
     assert found.loc[A0, "log_likelihood"] == pytest.approx(wine["judges"][0], abs=1e-3)
     assert found.loc[A0, "aic"] == pytest.approx(wine["judges_aic"][0], abs=2e-3)
+    assert found.loc[LOGISTIC, "log_likelihood"] == pytest.approx(wine["logit"][0], abs=2e-3)
+    assert np.isnan(found.loc[LOGISTIC, "left_out"])
     assert found.loc[A, "log_likelihood"] >= found.loc[A0, "log_likelihood"] - 0.02
 
 
@@ -53,15 +66,21 @@ def test_the_thesis_s_study_is_compared(thesis_tables: Tables) -> None:
     table = rivals(realism)
     assert tuple(table.columns) == COLUMNS
     found = table.set_index("model")
-    assert list(found.index) == [ALIKE, A0, A, METRIC]
-    assert found["is_reported"].tolist() == [False, True, False, False]
+    assert list(found.index) == [ALIKE, A0, A, LOGISTIC, METRIC]
+    assert found["is_reported"].tolist() == [False, True, False, False, False]
     assert found.loc[A0, "left_out_difference"] == 0.0
     assert found["aic"].to_numpy() == pytest.approx(
         (2 * found["parameters"] - 2 * found["log_likelihood"]).to_numpy(dtype=float)
     )
     assert found["aic_difference"].min() == 0.0
-    assert (found["left_out"] < found["log_likelihood"]).all()
-    assert (found["left_out_by"] == REFITS).all()
+    foretold = found.drop(index=LOGISTIC)
+    assert (foretold["left_out"] < foretold["log_likelihood"]).all()
+    assert (foretold["left_out_by"] == REFITS).all()
+    assert np.isnan(found.loc[LOGISTIC, "left_out"])
+    assert found.loc[LOGISTIC, "left_out_by"] == ""
+    assert found.loc[LOGISTIC, "log_likelihood"] == pytest.approx(
+        found.loc[A0, "log_likelihood"], abs=3.0
+    )
     assert found.loc[A, "log_likelihood"] > found.loc[A0, "log_likelihood"] - 0.05
     assert found.loc[A0, "log_likelihood"] > found.loc[ALIKE, "log_likelihood"] - 1e-3
 

@@ -46,6 +46,7 @@ def test_rivals_stand_side_by_side_and_the_report_s_is_marked(inference: Inferen
         "nothing",
         "leniency *",
         "leniency, scatter and style",
+        "leniency, logit link",
         "leniency, on a metric scale",
     ]
     assert "Taken as a metric scale, ratings are foretold" in section.sentences[0]
