@@ -19,6 +19,7 @@ from study.load.visit import Send, Visit
 from study.load.wire import Answered, Wire
 
 CUTS: Final[tuple[Cut, ...]] = ("request", "unheard", "answer")
+MISCHIEF: Final = (*CUTS, "doubled", "at once", "reload")
 KILL: Final = "kill"
 
 
@@ -66,8 +67,7 @@ class Trouble:
             return await self._killed(kind, send)
         if self.rng.random() >= self.share:
             return await send()
-        what = str(self.rng.choice([*CUTS, "doubled", "at once", "reload"]))
-        self.seen[what, kind] += 1
+        what = self.draw(kind)
         if what in CUTS:
             return await self._cut(next(cut for cut in CUTS if cut == what), send)
         if what == "doubled":
@@ -78,6 +78,16 @@ class Trouble:
         with contextlib.suppress(OSError):
             await visit.wire.get(visit.path)
         return await send()
+
+    def draw(self, kind: str) -> str:
+        """Draw what happens to a request of this kind: one of those that happened least to it.
+
+        So even what comes once per person, such as the consent, meets every trouble in a crowd.
+        """
+        fewest = min(self.seen[what, kind] for what in MISCHIEF)
+        what = str(self.rng.choice([one for one in MISCHIEF if self.seen[one, kind] == fewest]))
+        self.seen[what, kind] += 1
+        return what
 
     async def _killed(self, kind: str, send: Send) -> Answered:
         """Kill the server a moment after the request went out."""
