@@ -12,7 +12,7 @@ from typing import Final
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from study.data.researchers import RESULTS_HIDDEN, RESULTS_SHOWN
+from study.data.logbook import RESULTS_HIDDEN, RESULTS_SHOWN
 from study.data.schema import FigureSetRow, ParticipantRow, ResearcherLogRow, TrialRow
 
 PEOPLE, SIMULATED = "people", "simulated"

@@ -1,16 +1,14 @@
 """Researchers: accounts of the dashboard, patient with typing errors and slow with guessers.
 
-Passwords are kept as argon2id hashes. What a researcher does that others must see later, above all
-switching the results on, is logged.
+Passwords are kept as argon2id hashes. What researchers do is in ``logbook``.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import datetime, timedelta
-from typing import Any, Final
+from datetime import timedelta
+from typing import Final
 
 from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
@@ -18,16 +16,13 @@ from sqlalchemy import ColumnElement, delete, func, select
 
 from study.data.database import Database
 from study.data.refusals import RefusedError
-from study.data.schema import ResearcherLogRow, ResearcherRow, SignInAttemptRow
-from study.data.studies import Study
+from study.data.schema import ResearcherRow, SignInAttemptRow
 
 MIN_PASSWORD_CHARS: Final = 12
 MAX_PASSWORD_CHARS: Final = 500
 WINDOW: Final = timedelta(minutes=15)
 FREE_ATTEMPTS_PER_NAME: Final = 5
 FREE_ATTEMPTS_PER_ADDRESS: Final = 20
-RESULTS_SHOWN: Final = "results-shown"
-RESULTS_HIDDEN: Final = "results-hidden"
 
 _hasher = PasswordHasher()  # argon2id with the library's parameters (RFC 9106, low memory)
 _NOBODY = _hasher.hash("nobody has this password")
@@ -47,16 +42,6 @@ class Researcher:
 
     id: int
     name: str
-
-
-@dataclass(frozen=True)
-class LogEntry:
-    """Something that a researcher did."""
-
-    researcher: str
-    kind: str
-    payload: Mapping[str, Any]
-    created_at: datetime
 
 
 def add(db: Database, name: str, password: str) -> Researcher:
@@ -114,64 +99,6 @@ def sign_in(db: Database, name: str, password: str, *, address: str) -> Research
             return None
         session.execute(delete(SignInAttemptRow).where(SignInAttemptRow.name == name))
     return Researcher(row.id, row.name)
-
-
-def log(
-    db: Database,
-    researcher: Researcher,
-    kind: str,
-    *,
-    study: Study | None = None,
-    payload: Mapping[str, Any] | None = None,
-) -> None:
-    """Record something that a researcher did."""
-    with db.writing() as session:
-        session.add(
-            ResearcherLogRow(
-                researcher_id=researcher.id,
-                study_id=None if study is None else study.id,
-                kind=kind,
-                payload=dict(payload or {}),
-                created_at=db.now(),
-            )
-        )
-
-
-def show_results(db: Database, researcher: Researcher, study: Study, *, shown: bool) -> None:
-    """Record that a researcher switched a study's results on or off for themselves."""
-    log(db, researcher, RESULTS_SHOWN if shown else RESULTS_HIDDEN, study=study)
-
-
-def sees_results(db: Database, researcher: Researcher, study: Study) -> bool:
-    """Say whether a researcher has the results of a study switched on."""
-    query = (
-        select(ResearcherLogRow.kind)
-        .where(
-            ResearcherLogRow.researcher_id == researcher.id,
-            ResearcherLogRow.study_id == study.id,
-            ResearcherLogRow.kind.in_((RESULTS_SHOWN, RESULTS_HIDDEN)),
-        )
-        .order_by(ResearcherLogRow.id.desc())
-        .limit(1)
-    )
-    with db.reading() as session:
-        return session.scalar(query) == RESULTS_SHOWN
-
-
-def logged(db: Database, study: Study | None = None) -> list[LogEntry]:
-    """Return what researchers did, newest first: everything, or what concerns one study."""
-    query = (
-        select(ResearcherRow.name, ResearcherLogRow)
-        .join(ResearcherRow, ResearcherRow.id == ResearcherLogRow.researcher_id)
-        .order_by(ResearcherLogRow.id.desc())
-    )
-    if study is not None:
-        query = query.where(ResearcherLogRow.study_id == study.id)
-    with db.reading() as session:
-        return [
-            LogEntry(name, row.kind, row.payload, row.created_at)
-            for name, row in session.execute(query)
-        ]
 
 
 def _is_right(hashed: str, password: str) -> bool:

@@ -11,7 +11,7 @@ from typing import Final
 from fastapi import APIRouter, HTTPException
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import export, researchers
+from study.data import export, logbook
 from study.data.export import Tables, csv_of
 from study.data.studies import Study
 from study.site.dashboard import frame
@@ -55,7 +55,7 @@ def data(here: Here, researcher: ResearcherHere) -> Response:
         **frame(study, researcher, "/data", "Data"),
         files=[(name, meaning, counts.get(name)) for name, (meaning, _) in FILES.items()],
         simulated=int(tables.participants["simulated"].fillna(False).sum()),
-        log=researchers.logged(here.db, study)[:20],
+        log=logbook.logged(here.db, study)[:20],
     )
 
 
@@ -67,9 +67,7 @@ def download(here: Here, researcher: ResearcherHere, name: str) -> Response:
     if name not in FILES and name != "all.zip":
         raise HTTPException(404)
     tables = export.tables(here.db, study)
-    researchers.log(
-        here.db, researcher.researcher, "downloaded", study=study, payload={"file": name}
-    )
+    logbook.log(here.db, researcher.researcher, "downloaded", study=study, payload={"file": name})
     if name == "all.zip":
         return _attachment(_archive(study, tables), "application/zip", f"{stem}.zip")
     body = FILES[name][1](tables).encode()

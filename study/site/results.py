@@ -12,9 +12,9 @@ from typing import Final
 from fastapi import APIRouter, HTTPException
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import figures_shown, researchers
+from study.data import figures_shown, logbook
 from study.data.figures_due import KINDS
-from study.data.researchers import RESULTS_HIDDEN, RESULTS_SHOWN
+from study.data.logbook import RESULTS_HIDDEN, RESULTS_SHOWN
 from study.data.studies import Study
 from study.site.access import redirect
 from study.site.dashboard import frame
@@ -40,7 +40,7 @@ def results(here: Here, researcher: ResearcherHere, data: str = KINDS[0]) -> Res
         **frame(study, researcher, "/results", "Results"),
         "log": [
             entry
-            for entry in researchers.logged(here.db, study)
+            for entry in logbook.logged(here.db, study)
             if entry.kind in (RESULTS_SHOWN, RESULTS_HIDDEN)
         ][:20],
     }
@@ -52,7 +52,7 @@ def results(here: Here, researcher: ResearcherHere, data: str = KINDS[0]) -> Res
 
 
 def _sees(here: Place, researcher: SignedIn, study: Study) -> bool:
-    return researchers.sees_results(here.db, researcher.researcher, study)
+    return logbook.sees_results(here.db, researcher.researcher, study)
 
 
 @router.post("/researcher/results")
@@ -68,7 +68,7 @@ def switch(here: Here, researcher: ResearcherHere, fields: ResearchersForm) -> R
             log=[],
             fault="Please tick the sentence first.",
         )
-    researchers.show_results(here.db, researcher.researcher, study, shown=wants)
+    logbook.show_results(here.db, researcher.researcher, study, shown=wants)
     return redirect("/researcher/results")
 
 

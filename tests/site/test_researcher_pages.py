@@ -16,7 +16,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from study.data import figures, figures_shown, jobs, researchers
+from study.data import figures, figures_shown, jobs, logbook, researchers
 from study.data.schema import FigureSetRow
 from study.figures import draw_claimed
 from study.simulate import simulate
@@ -193,7 +193,7 @@ def test_results_are_hidden_until_asked_for_and_the_asking_is_recorded(site: Any
     ada.post("/researcher/results", show="no")
     assert "The results are hidden" in ada.page.text
     assert ada.client.get(figure).status_code == 403
-    kinds = [entry.kind for entry in researchers.logged(site.db, site.study)]
+    kinds = [entry.kind for entry in logbook.logged(site.db, site.study)]
     assert kinds == ["results-hidden", "results-shown"]
 
 
@@ -290,7 +290,7 @@ def test_the_tables_can_be_taken_away_one_by_one_and_together(site: Any, ada: An
     assert json.loads(archive.read("study.json"))["key"] == "small"
     assert archive.read("ratings.csv").decode() == answer.text
     assert ada.client.get("/researcher/data/secrets.csv").status_code == 404
-    assert [e.payload["file"] for e in researchers.logged(site.db, site.study)] == [
+    assert [e.payload["file"] for e in logbook.logged(site.db, site.study)] == [
         "all.zip",
         "ratings.csv",
     ]

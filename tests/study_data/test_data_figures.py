@@ -16,7 +16,7 @@ import pytest
 from analysis import Tables
 from study.commands.processes import ending
 from study.commands.starting import start_drawing
-from study.data import erasure, export, figures, figures_shown, participants, researchers
+from study.data import erasure, export, figures, figures_shown, logbook, participants, researchers
 from study.data.database import Database
 from study.data.figures import Claim
 from study.data.researchers import Researcher
@@ -33,7 +33,7 @@ SUMMARY = {"people": 2, "charts": []}
 def ada(db: Database, study: Study) -> Researcher:
     """A researcher who has the results of the study switched on."""
     found = researchers.add(db, "ada", "correct horse battery")
-    researchers.show_results(db, found, study, shown=True)
+    logbook.show_results(db, found, study, shown=True)
     return found
 
 
@@ -56,9 +56,9 @@ def test_nothing_is_drawn_before_somebody_asks_to_see_results(db: Database, stud
     answer(db, study)
     assert figures.due(db) == []
     ada = researchers.add(db, "ada", "correct horse battery")
-    researchers.show_results(db, ada, study, shown=True)
+    logbook.show_results(db, ada, study, shown=True)
     assert figures.due(db) == [(study.id, "simulated")]  # and no person has answered
-    researchers.show_results(db, ada, study, shown=False)
+    logbook.show_results(db, ada, study, shown=False)
     assert figures.due(db) == []
 
 
@@ -281,10 +281,10 @@ def test_a_killed_drawing_is_told(
 @pytest.mark.usefixtures("ada")
 def test_two_who_see_results_have_one_set_drawn(db: Database, study: Study) -> None:
     grace = researchers.add(db, "grace", "another long password")
-    researchers.show_results(db, grace, study, shown=True)
+    logbook.show_results(db, grace, study, shown=True)
     answer(db, study)
     assert figures.due(db) == [(study.id, "simulated")]
-    researchers.show_results(db, grace, study, shown=False)
+    logbook.show_results(db, grace, study, shown=False)
     assert figures.due(db) == [(study.id, "simulated")]  # ada still looks
 
 

@@ -8,7 +8,7 @@ import pytest
 from argon2 import PasswordHasher
 from sqlalchemy import text
 
-from study.data import researchers
+from study.data import logbook, researchers
 from study.data.database import Database
 from study.data.refusals import RefusedError
 from study.data.researchers import MustWaitError, Researcher
@@ -117,16 +117,16 @@ def test_showing_results_is_switched_per_researcher_and_recorded(
     db: Database, ada: Researcher, study: Study, clock: Any
 ) -> None:
     bob = researchers.add(db, "bob", PASSWORD)
-    assert not researchers.sees_results(db, ada, study)
-    researchers.show_results(db, ada, study, shown=True)
+    assert not logbook.sees_results(db, ada, study)
+    logbook.show_results(db, ada, study, shown=True)
     first = clock.now
     clock.move(hours=1)
-    assert researchers.sees_results(db, ada, study)
-    assert not researchers.sees_results(db, bob, study)
-    researchers.show_results(db, ada, study, shown=False)
-    assert not researchers.sees_results(db, ada, study)
-    researchers.log(db, bob, "exported", study=study, payload={"format": "zip"})
-    found = researchers.logged(db, study)
+    assert logbook.sees_results(db, ada, study)
+    assert not logbook.sees_results(db, bob, study)
+    logbook.show_results(db, ada, study, shown=False)
+    assert not logbook.sees_results(db, ada, study)
+    logbook.log(db, bob, "exported", study=study, payload={"format": "zip"})
+    found = logbook.logged(db, study)
     assert [(entry.researcher, entry.kind) for entry in found] == [
         *(("bob", "exported"), ("ada", "results-hidden"), ("ada", "results-shown"))
     ]
