@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from analysis.charts import CHARTS, Chart, figure_bytes, figures
     from analysis.costs.cost import read_bench
     from analysis.decision.margins import Margins, declared_margins
-    from analysis.report.publish import Summary, analyse
+    from analysis.report.publish import analyse
+    from analysis.report.summary import Summary
     from analysis.simulation.observers import Answer, Observer, Stimulus, draw_observer
     from analysis.tables.codebook import accepted_in, codebook, columns_of
     from analysis.tables.column import Column
@@ -30,7 +31,8 @@ _HOMES = {
     "decision.margins": ("Margins", "declared_margins"),
     "simulation.observers": ("Answer", "Observer", "Stimulus", "draw_observer"),
     "tables.parsing": ("TableError",),
-    "report.publish": ("Summary", "analyse"),
+    "report.publish": ("analyse",),
+    "report.summary": ("Summary",),
     "tables.reading": ("Tables", "read_source", "tables_from"),
     "tables.codebook": ("accepted_in", "codebook", "columns_of"),
     "tables.columns": ("COLUMNS", "column_names"),

@@ -54,7 +54,8 @@ _Made = TypeVar("_Made")
 class Chart:
     """One chart: its file's name, where it stands, what it is called, its drawing, its table.
 
-    ``draw`` and ``table`` take the same material, so that what is written is what is drawn.
+    ``draw`` and ``table`` take the same material, so that what is written is what is drawn. An
+    early chart is drawn from the tables alone, so it need not wait for models.
     """
 
     name: str
@@ -62,6 +63,7 @@ class Chart:
     title: str
     draw: Draw
     table: Tell
+    is_early: bool = False
 
     @property
     def caption(self) -> str:
@@ -104,43 +106,46 @@ CHARTS: Final = (
     _curves(PREFERRED),
     _curves(RATED),
     Chart("realism-per-clip", "ratings", clips.TITLE, _tables(clips.realism_per_clip),
-          _tables(clips.eye_means)),
+          _tables(clips.eye_means), is_early=True),
     Chart("realism-matrix", "ratings", cells.MATRIX, _tables(cells.realism_matrix),
-          _tables(lambda t: mean_ratings(t.ratings, ["lod", "distance"]))),
+          _tables(lambda t: mean_ratings(t.ratings, ["lod", "distance"])), is_early=True),
     Chart("rating-distribution", "ratings", cells.DISTRIBUTION,
           _tables(cells.rating_distribution),
-          _tables(lambda t: rating_counts(t.ratings, ["distance", "lod"], scale=t.scale))),
+          _tables(lambda t: rating_counts(t.ratings, ["distance", "lod"], scale=t.scale)),
+          is_early=True),
     Chart("perceived-against-actual", "ratings", trends.AGAINST_LOD,
           _tables(trends.perceived_against_actual),
-          _tables(lambda t: rank_correlations(t.ratings))),
+          _tables(lambda t: rank_correlations(t.ratings)), is_early=True),
     Chart("perceived-by-model", "ratings", by_model.BY_MODEL, by_model.perceived_by_model,
           by_model_table.by_model_table),
     Chart("realism-by-distance", "ratings", trends.BY_DISTANCE,
           _tables(trends.realism_by_distance),
-          _tables(lambda t: mean_ratings(t.ratings, ["distance", "lod"]))),
+          _tables(lambda t: mean_ratings(t.ratings, ["distance", "lod"])), is_early=True),
     Chart("comparisons-per-pair", "comparisons", choices.PAIR_COMPARED,
           choices.comparisons_per_pair, choices.pair_comparisons),
     Chart("preference", "comparisons", scales.PREFERENCE, scales.preference_scale,
           scales.preference_table),
     Chart("noticed-per-pair", "comparisons", choices.PAIR_NOTICED,
           _tables(choices.noticed_per_pair),
-          _tables(lambda t: shares.pair_notice_shares(t.comparisons))),
+          _tables(lambda t: shares.pair_notice_shares(t.comparisons)), is_early=True),
     Chart("detection", "comparisons", detection.DETECTION, detection.detection,
           detection.detection_table),
     Chart("comparisons-per-clip", "comparisons", choices.CLIP_COMPARED,
           choices.comparisons_per_clip, choices.clip_comparisons),
     Chart("noticed-per-clip", "comparisons", choices.CLIP_NOTICED,
           _tables(choices.noticed_per_clip),
-          _tables(lambda t: shares.notice_shares(shares.clips_or_pairings(t.comparisons)))),
-    Chart("observers", "people", people.OBSERVERS, people.observers, people.observers_table),
+          _tables(lambda t: shares.notice_shares(shares.clips_or_pairings(t.comparisons))),
+          is_early=True),
+    Chart("observers", "people", people.OBSERVERS, people.observers, people.observers_table,
+          is_early=True),
     Chart("ratings-per-person", "people", heat.HEAT_MAP, heat.ratings_heat_map,
-          heat.heat_table),
+          heat.heat_table, is_early=True),
     Chart("verdict-stability", "people", stability.STABILITY, stability.verdict_stability,
           stability.stability_table),
     Chart("session-course", "people", course.COURSE, course.over_the_session,
-          course.course_table),
+          course.course_table, is_early=True),
     Chart("rating-spread", "people", spread.SPREAD, spread.spread_of_ratings,
-          spread.spread_table),
+          spread.spread_table, is_early=True),
     Chart("model-residuals", "people", residuals.RESIDUALS, residuals.residual_chart,
           residuals.residual_quantiles),
     Chart("predicted-shares", "people", ends.ENDS, ends.ends_chart, ends.ends_table),

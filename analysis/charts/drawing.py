@@ -1,78 +1,79 @@
-"""Draw all charts into the bytes of their files, in this process or shared with a second one."""
+"""Draw all charts into the bytes of their files, in this process or shared with forks of it.
+
+A fork has the libraries and the tables at no cost: a fresh process would take as long to start as
+it would save. What the tables alone tell can be drawn while models are still fitted, and the rest
+while tables and sentences are written.
+"""
 
 from __future__ import annotations
 
-import multiprocessing
-import sys
-import warnings
-from collections.abc import Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing.sharedctypes import Synchronized
-from typing import Final
+from collections.abc import Iterable, Sequence
+from types import TracebackType
+from typing import Final, Self
 
 from analysis.charts.catalogue import CHARTS, Chart
+from analysis.charts.forks import CAN_FORK, Fork, Queue
 from analysis.charts.material import Material
 from analysis.charts.style import figure_bytes
 
-_SHARED: Final[dict[str, Material]] = {}
-_TAKEN: Final[dict[str, Synchronized[int]]] = {}  # how many charts somebody has taken
+EARLY: Final = tuple(chart for chart in CHARTS if chart.is_early)
+LATE: Final = tuple(chart for chart in CHARTS if not chart.is_early)
+
+
+class Drawing:
+    """Charts being drawn: some by forks of this process, what these have not taken by itself.
+
+    Without a second process, or where the system cannot fork, ``finish`` draws everything.
+    """
+
+    def __init__(self, *, processes: int = 1) -> None:
+        self._has_forks = processes > 1 and CAN_FORK
+        self._shares: list[tuple[Material, Sequence[Chart], Queue[Chart]]] = []
+        self._forks: list[Fork] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        for fork in self._forks:
+            fork.end()
+
+    def start(self, material: Material, charts: Sequence[Chart]) -> None:
+        """Have these charts drawn from the material, by a fork if there is one."""
+        queue = Queue(charts)
+        self._shares.append((material, charts, queue))
+        if self._has_forks:
+            self._forks.append(Fork(lambda: _draw(material, queue)))
+
+    def finish(self) -> dict[str, bytes]:
+        """Draw with the forks until nothing is left; return SVG and PNG by file name."""
+        files: dict[str, bytes] = {}
+        for material, _, queue in reversed(self._shares):
+            files |= _draw(material, queue)
+        for fork in self._forks:
+            files |= fork.result()
+        # A fork that was killed, as where memory ran out, or met a fault leaves its charts to us.
+        for material, charts, _ in self._shares:
+            files |= _draw(material, [own for own in charts if f"{own.name}.png" not in files])
+        return files
 
 
 def draw_charts(material: Material, *, processes: int = 1) -> dict[str, bytes]:
-    """Return every chart as SVG and PNG by file name; one figure serves both.
-
-    With two ``processes`` a fork of this one draws beside it, where the system can fork.
-    """
-    if processes > 1 and sys.platform == "linux":
-        return _draw_shared(material)
-    return _draw(material, CHARTS)
+    """Return every chart as SVG and PNG by file name."""
+    with Drawing(processes=processes) as drawing:
+        drawing.start(material, CHARTS)
+        return drawing.finish()
 
 
 def _draw(material: Material, charts: Iterable[Chart]) -> dict[str, bytes]:
+    """Draw charts one after another; one figure serves both kinds of file."""
     files: dict[str, bytes] = {}
     for chart in charts:
         figure = chart.draw(material)
         files |= {f"{chart.name}.{kind}": figure_bytes(figure, kind) for kind in ("svg", "png")}
     return files
-
-
-def _untaken(taken: Synchronized[int]) -> Iterator[Chart]:
-    """Yield the next chart that nobody has taken, until none is left."""
-    while True:
-        with taken.get_lock():
-            place = taken.value
-            taken.value += 1
-        if place >= len(CHARTS):
-            return
-        yield CHARTS[place]
-
-
-def _draw_shared(material: Material) -> dict[str, bytes]:
-    """Draw while a fork draws too, each the next chart that is left; alone if the fork dies.
-
-    A fork has the libraries and the material at no cost: a fresh process would take as long to
-    start as it would save.
-    """
-    context = multiprocessing.get_context("fork")
-    taken = context.Value("i", 0)
-    _SHARED["material"], _TAKEN["charts"] = material, taken
-    try:
-        with ProcessPoolExecutor(1, mp_context=context) as pool:
-            with warnings.catch_warnings():
-                # Python warns of forking beside threads: the child draws, and takes no lock.
-                warnings.simplefilter("ignore", DeprecationWarning)
-                other = pool.submit(_draw_beside)
-            own = _draw(material, _untaken(taken))
-            try:
-                return own | other.result()
-            except BrokenProcessPool:  # killed, as where memory ran out
-                left = [chart for chart in CHARTS if f"{chart.name}.png" not in own]
-                return own | _draw(material, left)
-    finally:
-        _SHARED.clear()
-        _TAKEN.clear()
-
-
-def _draw_beside() -> dict[str, bytes]:
-    return _draw(_SHARED["material"], _untaken(_TAKEN["charts"]))

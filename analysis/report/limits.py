@@ -53,7 +53,8 @@ def _about_verdicts(inference: Inference) -> list[str]:
     if not inference.decisions:
         return [
             "There is no verdict on any LoD: nowhere did two people or more rate the highest LoD "
-            "and a lower one, with ranks that say which is which."
+            "and a lower one, with ranks that say which is which (the names low, medium, high and "
+            "ultra, or a column lod_rank)."
         ]
     verdicts = [verdict for decision in inference.decisions for verdict in decision.verdicts]
     text = [

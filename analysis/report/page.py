@@ -35,7 +35,7 @@ from analysis.report.tables import (
 from analysis.tables.reading import Tables
 
 if TYPE_CHECKING:
-    from analysis.report.publish import Summary
+    from analysis.report.summary import Summary
 
 REPORT: Final = "report.html"
 

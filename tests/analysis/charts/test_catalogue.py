@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from PIL import Image
 
-from analysis.charts import CHARTS, drawing, figures
+from analysis.charts import CHARTS, figures
 from analysis.charts.material import Material
 from analysis.charts.parts import distance_label
 from analysis.charts.style import (
@@ -184,14 +184,3 @@ def test_named_lods_have_colours_of_their_own() -> None:
     lods = ["low", "ultra", "ultra-no-caustics", "ultra-no-sclera"]
     assert len({lod_colour(lod, lods) for lod in lods}) == 4
     assert len(set(scale_colours(7))) == 7
-
-
-def test_two_processes_draw_what_one_draws(
-    thesis_tables: Tables, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(drawing, "CHARTS", CHARTS[7:10])
-    material = Material(thesis_tables)
-    together = drawing.draw_charts(material, processes=2)
-    assert together == drawing.draw_charts(material)
-    assert len(together) == 6
-    assert drawing._SHARED == {}

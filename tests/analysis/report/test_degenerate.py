@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from analysis.charts import CHARTS
+from analysis.charts.drawing import Drawing
 from study.cli import main
 
 Row = tuple[str, str, str, str, int | str]
@@ -24,7 +25,8 @@ LODS = ("low", "high", "ultra")
 @pytest.fixture(autouse=True)
 def no_charts(monkeypatch: pytest.MonkeyPatch) -> None:
     blank = {f"{chart.name}.{kind}": b"<svg/>" for chart in CHARTS for kind in ("svg", "png")}
-    monkeypatch.setattr("analysis.report.publish.draw_charts", lambda *_, **__: dict(blank))
+    monkeypatch.setattr(Drawing, "start", lambda *_: None)
+    monkeypatch.setattr(Drawing, "finish", lambda _: dict(blank))
 
 
 def analyse(folder: Path, rows: list[Row], comparisons: pd.DataFrame | None = None) -> int:

@@ -14,7 +14,7 @@ import pytest
 
 import analysis
 from analysis.charts import CHARTS
-from analysis.report.publish import Summary
+from analysis.report.summary import Summary
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.simulated import simulate_tables
 from analysis.tables.reading import Tables, tables_from

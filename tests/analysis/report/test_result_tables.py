@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 from analysis.charts import CHARTS
+from analysis.charts.drawing import Drawing
 from analysis.report.publish import analyse
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.population import POPULATION
@@ -32,7 +33,8 @@ def levels(lod: str) -> dict[str, str]:
 def written(folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
     """Return the columns of every CSV file of an analysis that has everything."""
     blank = {f"{chart.name}.{kind}": b"<svg/>" for chart in CHARTS for kind in ("svg", "png")}
-    monkeypatch.setattr("analysis.report.publish.draw_charts", lambda *_, **__: dict(blank))
+    monkeypatch.setattr(Drawing, "start", lambda *_: None)
+    monkeypatch.setattr(Drawing, "finish", lambda _: dict(blank))
     pairs = [(lod, other) for lod in LODS for other in ("ultra", lod)]
     clips = {
         f"{where}-{left}-{right}": Stimulus(

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 import analysis
-from analysis.report.publish import Summary
+from analysis.report.summary import Summary
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.simulated import simulate_tables
 from analysis.tables.reading import tables_from
