@@ -34,10 +34,15 @@ def code(db: Database, participant: Participant) -> str | None:
     """Return the participant's code; None while a trial is open, or where there is no code."""
     with db.reading() as session:
         row = session.get_one(ParticipantRow, participant.id)
-        outcome, own = row.outcome, row.completion_code
-    if outcome is None:
+        return code_of(row, by_id(db, participant.study_id).definition)
+
+
+def code_of(row: Any, definition: StudyDefinition) -> str | None:
+    """Return the same of a participant's row."""
+    if row.outcome is None:
         return None
-    given = by_id(db, participant.study_id).definition.endings.code_of(outcome)
+    own: str | None = row.completion_code
+    given = definition.endings.code_of(row.outcome)
     return {GENERATED: own, NO_CODE: None}.get(given, given)
 
 

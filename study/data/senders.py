@@ -5,11 +5,13 @@ They do what ``participants.locked`` and ``participants.touch`` do, in prepared 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from datetime import datetime
 from typing import Any, Final
 
 from sqlalchemy import bindparam, select, update
 
+from study.data.devices import read_device
 from study.data.errands import Errand
 from study.data.participants import IDLE, SEEN_AGAIN, By, Participant, token_hash, touch
 from study.data.prepared import Prepared, table_of
@@ -33,8 +35,11 @@ _KEPT: Final = Prepared(
 _SITTING: Final = Prepared(
     update(_S).where(_S.c.id == bindparam("sitting")).values(last_seen_at=bindparam("now"))
 )
+_DEVICE: Final = Prepared(
+    update(_S).where(_S.c.id == bindparam("sitting")).values(device=bindparam("facts"))
+)
 _LATEST: Final = Prepared(
-    select(_S.c.id.label("sitting_id"), _S.c.last_seen_at.label("seen_at"))
+    select(_S.c.id.label("sitting_id"), _S.c.last_seen_at.label("seen_at"), _S.c.device)
     .where(_S.c.participant_id == bindparam("who"))
     .order_by(_S.c.number.desc())
     .limit(1)
@@ -83,7 +88,10 @@ def locking_again(participant: Participant) -> Errand[Any]:
     return row
 
 
-def seeing(who: Any, now: datetime) -> Errand[None]:
-    """Note that somebody is here; ``who`` is their row, held for writing."""
-    sittings = yield _LATEST, {"who": who.id}
-    yield from touching(who, sittings[0], now)
+def seeing(who: Any, now: datetime, *, device: Mapping[str, Any] | None = None) -> Errand[None]:
+    """Note that somebody is here, and with which ``device``; ``who`` is their row, held."""
+    [latest] = yield _LATEST, {"who": who.id}
+    sitting = yield from touching(who, latest, now)
+    if device is not None:
+        kept = {**latest.device, **read_device(device)}
+        yield _DEVICE, {"sitting": sitting, "facts": kept}

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
+from sqlalchemy import bindparam, select
+
 from study.data import consents, trials
 from study.data.checks import CHECKS, doing
 from study.data.database import Database
@@ -16,8 +18,10 @@ from study.data.errands import Errand
 from study.data.events import Recorded
 from study.data.notes import noting, told_before
 from study.data.participants import Participant
+from study.data.prepared import Prepared, table_of
 from study.data.progress import early_step
 from study.data.refusals import NotReachedError
+from study.data.schema import EventRow
 from study.data.senders import locking_again
 from study.data.studies import by_id
 from study.design.definition import StudyDefinition
@@ -26,6 +30,14 @@ from study.design.questions import Question, read_answers
 ABOUT: Final = "about"
 INSTRUCTED: Final = "instructed"
 BEGUN: Final = "begun"
+DRAFTED: Final = "drafted"
+"""The kind of what was typed into the page about the participant before it was sent."""
+_E: Final = table_of(EventRow)
+_DRAFTS: Final = Prepared(
+    select(_E.c.payload)
+    .where(_E.c.participant_id == bindparam("who"), _E.c.kind == DRAFTED)
+    .order_by(_E.c.id)
+)
 
 
 def store_about(
@@ -72,6 +84,12 @@ def asked_about(definition: StudyDefinition, *, with_health: bool) -> tuple[Ques
         for question in definition.about
         if definition.consent.asks(question.id, with_health=with_health)
     )
+
+
+def drafting(participant_id: int) -> Errand[dict[str, object]]:
+    """Return question -> what was typed last, of somebody who left that page in the middle."""
+    rows = yield _DRAFTS, {"who": participant_id}
+    return {str(row.payload["question"]): row.payload["value"] for row in rows}
 
 
 def finish_instructions(db: Database, participant: Participant, *, key: str) -> Recorded:

@@ -3,18 +3,19 @@
 Whoever comes while a transaction waits for the disk is in the next one. On SQLite the statements
 run on the event loop's own thread: each takes some microseconds, less than another thread would
 wait for the interpreter, and only what may wait (the turn to write, the disk) runs in a thread
-beside it. On PostgreSQL every statement waits for the server, so the whole batch runs beside it.
+beside it. On PostgreSQL every statement waits for the server, so the whole batch runs beside it,
+and those who only read are gathered as well, in a line of their own.
 """
 
 from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import asynccontextmanager
+from contextlib import AbstractContextManager, asynccontextmanager
 from dataclasses import dataclass, field
-from typing import Any, Final, TypeVar
+from typing import Any, Final, Literal, TypeVar
 from weakref import WeakKeyDictionary
 
 from sqlalchemy import Connection
@@ -32,10 +33,14 @@ QUIET_TURNS: Final = 3
 """Turns of the event loop in which nobody joined: a request takes two to be read."""
 
 
+Purpose = Literal["write", "gate", "look"]
+
+
 @dataclass
 class _Line:
-    """Errands that wait in one event loop, each with the future of whoever sent it."""
+    """Errands that wait in one event loop for one purpose, each with the future of its sender."""
 
+    purpose: Purpose
     waiting: list[tuple[Make[Any], asyncio.Future[Any]]] = field(default_factory=list)
     task: asyncio.Task[None] | None = None
     eyes: Eyes | None = None
@@ -49,41 +54,54 @@ class _Line:
         return taken
 
 
+_Lines = dict[Purpose, _Line]
+
+
 class Writer:
     """Runs errands that write; ``write`` returns once what its errand wrote is on the disk."""
 
     def __init__(self, db: Database) -> None:
         self._db = db
-        self._lines: WeakKeyDictionary[asyncio.AbstractEventLoop, _Line] = WeakKeyDictionary()
+        self._lines: WeakKeyDictionary[asyncio.AbstractEventLoop, _Lines] = WeakKeyDictionary()
 
-    async def write(self, make: Make[T]) -> T:
-        """Run an errand among those of others; raises its own error, or why nothing was stored."""
-        loop, line = asyncio.get_running_loop(), self._line()
-        future: asyncio.Future[T] = loop.create_future()
-        line.waiting.append((make, future))
-        if line.task is None:
-            line.task = loop.create_task(self._work(line))
-        return await future
+    async def write(self, make: Make[T], *, is_gated: bool = False) -> T:
+        """Run an errand among those of others; raises its own error, or why nothing was stored.
+
+        ``is_gated`` says that it asks for a study's row first. Such errands have a line of their
+        own where a server is asked: whoever held a participant's row and waited for the study's
+        would wait for ever for one who has that and waits for the participant's.
+        """
+        return await self._join("gate" if is_gated and self._db.group is None else "write", make)
 
     async def look(self, make: Make[T]) -> T:
-        """Run an errand that only reads: here on SQLite, in a thread where a server is asked."""
+        """Run an errand that only reads: at once on SQLite, else among those of others."""
         if self._db.group is None:
-            return await asyncio.to_thread(self._db.look, make)
-        line = self._line()
+            return await self._join("look", make)
+        line = self._line("look")
         if line.eyes is None:
             line.eyes = self._db.eyes()
         return line.eyes.look(make)
 
     def close(self) -> None:
         """Let the last batches end."""
-        for line in list(self._lines.values()):
+        for line in [line for lines in list(self._lines.values()) for line in lines.values()]:
             line.beside.shutdown()
             if line.eyes is not None:
                 line.eyes.close()
 
-    def _line(self) -> _Line:
+    async def _join(self, purpose: Purpose, make: Make[T]) -> T:
+        """Wait in a line, and begin to work it off if nobody does."""
+        loop, line = asyncio.get_running_loop(), self._line(purpose)
+        future: asyncio.Future[T] = loop.create_future()
+        line.waiting.append((make, future))
+        if line.task is None:
+            line.task = loop.create_task(self._work(line))
+        return await future
+
+    def _line(self, purpose: Purpose) -> _Line:
         loop = asyncio.get_running_loop()
-        return self._lines.get(loop) or self._lines.setdefault(loop, _Line())
+        lines = self._lines.get(loop) or self._lines.setdefault(loop, {})
+        return lines.get(purpose) or lines.setdefault(purpose, _Line(purpose))
 
     async def _work(self, line: _Line) -> None:
         """Run batch after batch until nobody waits."""
@@ -110,16 +128,13 @@ class Writer:
         taken = line.take()
         makes = [make for make, _ in taken]
         loop = asyncio.get_running_loop()
+        own = self._db.glance if line.purpose == "look" else self._db.batch
         try:
-            outcomes = await loop.run_in_executor(line.beside, self._whole, makes)
+            outcomes = await loop.run_in_executor(line.beside, _whole, own, makes)
         except BaseException as error:
             _refuse(taken, error)
         else:
             _tell(taken, outcomes)
-
-    def _whole(self, makes: Sequence[Make[Any]]) -> list[Outcome]:
-        with self._db.batch() as connection:
-            return run(connection, makes)
 
     @asynccontextmanager
     async def _transaction(self, line: _Line) -> AsyncIterator[Connection]:
@@ -134,6 +149,13 @@ class Writer:
             await loop.run_in_executor(line.beside, own.__exit__, *how)
             raise
         await loop.run_in_executor(line.beside, own.__exit__, None, None, None)
+
+
+def _whole(
+    own: Callable[[], AbstractContextManager[Connection]], makes: Sequence[Make[Any]]
+) -> list[Outcome]:
+    with own() as connection:
+        return run(connection, makes)
 
 
 async def _gather(line: _Line) -> None:

@@ -3,54 +3,70 @@
 from __future__ import annotations
 
 import secrets
-from typing import Final
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import HTMLResponse, Response
 
-from study.data import consents, events, steps
+from study.data import consents, steps
+from study.data.errands import Errand
+from study.design.definition import StudyDefinition
 from study.design.questions import AnswerError, Question
-from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
+from study.site.access import Visitor, visitor_or_none
+from study.site.asker import nobody
+from study.site.casting import cast_page
 from study.site.forms import answers_in, first, question_rows
-from study.site.place import Here
-from study.site.way import on_the_way
+from study.site.place import Place
+from study.site.way import AtStep, Sent, at_step, go_on, on_the_way, sent_form
 
 router = APIRouter(default_response_class=HTMLResponse)
-DRAFTED: Final = "drafted"
 
 
 @router.get("/about-you")
-def about(here: Here, visitor: AVisitor) -> Response:
+async def about(request: Request) -> Response:
     """Ask about the participant."""
-    step_of(here, visitor, "about")
-    return _about_page(here, visitor, _drafts(here, visitor))
+    at = await at_step(request, "about")
+    if drafts := await at.here.writer.look(partial(steps.drafting, at.who.id)):
+        return await run_in_threadpool(_about_page, at.here, at.visitor, drafts)
+    return cast_page(
+        at.here,
+        at.visitor.study,
+        at.visitor,
+        "about",
+        own={"key": secrets.token_hex(16)},
+        asked=(at.has_health,),
+        fixed=lambda _frame: _blank(at),
+    )
 
 
-def questions_about(here: Here, visitor: Visitor) -> tuple[Question, ...]:
-    """Return the questions about the participant, without those that they did not agree to."""
-    with_health = consents.allows_health(here.db, visitor.participant)
-    return steps.asked_about(visitor.study.definition, with_health=with_health)
-
-
-def _drafts(here: Here, visitor: Visitor) -> dict[str, object]:
-    """Return what was typed into this page before, in case it was left in the middle."""
-    drafted: dict[str, object] = {}
-    for event in events.history(here.db, visitor.participant):
-        if event.kind == DRAFTED:
-            drafted[str(event.payload["question"])] = event.payload["value"]
-    return drafted
+def _blank(at: AtStep) -> dict[str, Any]:
+    definition = at.visitor.study.definition
+    questions = steps.asked_about(definition, with_health=at.has_health)
+    return {
+        "about": definition.about_page,
+        "rows": question_rows(questions),
+        "answers": {},
+        "faults": {},
+        "way": at.marks("about"),
+    }
 
 
 def _about_page(
-    here: Here, visitor: Visitor, answers: dict[str, object], error: AnswerError | None = None
+    here: Place,
+    visitor: Visitor,
+    answers: Mapping[str, object],
+    error: AnswerError | None = None,
 ) -> Response:
-    definition = visitor.study.definition
+    """Show the page with what was typed into it, and why it was not stored."""
     frame = on_the_way(here, visitor, "about")
     return here.page(
         "participant/about.html",
         status=422 if error else 200,
         **frame,
-        about=definition.about_page,
+        about=visitor.study.definition.about_page,
         rows=question_rows(questions_about(here, visitor)),
         answers=answers,
         faults=error.said(frame["text"]) if error else {},
@@ -58,33 +74,59 @@ def _about_page(
     )
 
 
+def questions_about(here: Place, visitor: Visitor) -> tuple[Question, ...]:
+    """Return the questions about the participant, without those that they did not agree to."""
+    with_health = consents.allows_health(here.db, visitor.participant)
+    return steps.asked_about(visitor.study.definition, with_health=with_health)
+
+
 @router.post("/about-you")
-def store_about(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
+async def store_about(request: Request) -> Response:
     """Store the answers about the participant."""
-    answers = answers_in(fields, questions_about(here, visitor))
+    sent = await sent_form(request)
     try:
-        steps.store_about(
-            here.db, visitor.participant, answers, key=first(fields, "key") or "about"
-        )
+        return await go_on(request, sent, partial(_store, sent))
     except AnswerError as error:
-        return _about_page(here, visitor, answers, error)
-    return to_current(here, visitor)
+        return await run_in_threadpool(_again, request, sent, error)
+
+
+def _store(sent: Sent, who: Any, definition: StudyDefinition) -> Errand[bool]:
+    key = first(sent.fields, "key") or "about"
+    given = answers_in(sent.fields, (yield from steps.asking_about(who, definition)))
+    return (yield from steps.storing_about(sent.here.db, who, definition, given, key=key))
+
+
+def _again(request: Request, sent: Sent, error: AnswerError) -> Response:
+    """Show the page once more, with what was given and why it was not stored."""
+    visitor = visitor_or_none(request, sent.here)
+    if visitor is None:
+        raise nobody(request)
+    given = answers_in(sent.fields, questions_about(sent.here, visitor))
+    return _about_page(sent.here, visitor, given, error)
 
 
 @router.get("/instructions")
-def instructions(here: Here, visitor: AVisitor) -> Response:
+async def instructions(request: Request) -> Response:
     """Say what to do."""
-    step_of(here, visitor, "instructions")
-    return here.page(
-        "participant/instructions.html",
-        **on_the_way(here, visitor, "instructions"),
-        instructions=visitor.study.definition.instructions,
+    at = await at_step(request, "instructions")
+    definition = at.visitor.study.definition
+    return cast_page(
+        at.here,
+        at.visitor.study,
+        at.visitor,
+        "instructions",
+        own={"resume_url": at.visitor.resume_url},
+        asked=(at.has_health,),
+        fixed=lambda _frame: {
+            "instructions": definition.instructions,
+            "way": at.marks("instructions"),
+        },
     )
 
 
 @router.post("/instructions")
-def read_instructions(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
+async def read_instructions(request: Request) -> Response:
     """Note that the instructions were read."""
-    del fields  # the form carries only its proof
-    steps.finish_instructions(here.db, visitor.participant, key="instructions")
-    return to_current(here, visitor)
+    sent = await sent_form(request)
+    read = partial(steps.finishing_instructions, sent.here.db, key="instructions")
+    return await go_on(request, sent, read)

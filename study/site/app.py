@@ -32,6 +32,7 @@ from study.site import (
     preparing,
     results,
     trial,
+    way,
 )
 from study.site.errors import handle_errors
 from study.site.express import Express
@@ -47,6 +48,7 @@ THREADS: Final = 16
 ROOMS = (
     news,
     trial,
+    way,
     beginning,
     invitations,
     consent,

@@ -1,13 +1,16 @@
-"""The requests that come most, answered past the framework: entries, and the pages of trials.
+"""The requests that come most, answered past the framework: the whole way of a participant.
 
 Its layers cost as much as storing an answer does. What is asked, the errors and the headers are
 the same as through them, because both ways lead to the same functions; and whatever is not quite
 ordinary (a query, another site's page, a path that no number ends) takes the longer way.
+
+It is no second framework: one table of paths, no parameters but a trial's number, nothing that a
+function could not do with the request alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from functools import partial
 from typing import Final
 
@@ -15,14 +18,30 @@ from fastapi import FastAPI, Request
 from fastapi.responses import Response
 from starlette.types import Receive, Scope, Send
 
-from study.site import news, trial
+from study.site import about, consent, ending, news, preparing, trial, way
 from study.site.errors import answer_error, is_foreseen
 from study.site.headers import completed, is_foreign, limited
+from study.site.language import LANGUAGE_FIELD
 
 Act = Callable[[Request], Awaitable[Response]]
 TRIAL: Final = "/trial/"
 MOST_DIGITS: Final = 6
 _TRIAL_ACTS: Final = {"GET": trial.trial, "POST": trial.finish}
+_ACTS: Final[Mapping[tuple[str, str], Act]] = {
+    ("POST", "/events"): news.report,
+    ("GET", "/consent"): consent.consent,
+    ("POST", "/consent"): consent.agree,
+    ("GET", "/continue"): way.lead,
+    ("GET", "/about-you"): about.about,
+    ("POST", "/about-you"): about.store_about,
+    ("GET", "/instructions"): about.instructions,
+    ("POST", "/instructions"): about.read_instructions,
+    ("GET", "/preparing"): preparing.preparing,
+    ("POST", "/preparing"): preparing.begin,
+    ("GET", "/thanks"): ending.thanks,
+}
+_ASKED: Final[Mapping[tuple[str, str], Act]] = {("GET", "/preparing/state"): preparing.asked_state}
+"""What is asked with a query."""
 
 
 class Express(FastAPI):
@@ -44,11 +63,13 @@ class Express(FastAPI):
 
 def wanted(scope: Scope) -> Act | None:
     """Return what answers a request the short way; None for any other."""
-    if scope["type"] != "http" or scope["query_string"] or scope.get("root_path"):
+    if scope["type"] != "http" or scope.get("root_path"):
         return None
-    path, method = scope["path"], scope["method"]
-    if path == "/events":
-        return news.report if method == "POST" else None
+    path, method, query = scope["path"], scope["method"], scope["query_string"]
+    if query:  # another language is remembered on the longer way
+        return None if LANGUAGE_FIELD.encode() in query else _ASKED.get((method, path))
+    if act := _ACTS.get((method, path)):
+        return act
     if not path.startswith(TRIAL) or method not in _TRIAL_ACTS:
         return None
     number = path[len(TRIAL) :]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from fastapi import Request
+from fastapi.concurrency import run_in_threadpool
 
 from study.data import limits
 from study.data.entrance import Newcomer, entering
@@ -14,7 +16,7 @@ from study.site.access import ForgedError
 from study.site.arrival import Arrival, person_key, to_store, token_of
 from study.site.browsers import browser_family
 from study.site.consent_words import consent_words
-from study.site.forms import first
+from study.site.forms import Fields, first
 from study.site.language import language_of
 from study.site.place import Here
 from study.site.signatures import (
@@ -27,14 +29,14 @@ from study.site.signatures import (
 from study.texts import catalogue
 
 
-def join(
+async def join(
     request: Request,
     here: Here,
     study: Study,
     arrival: Arrival,
     *,
     wishes: tuple[str, ...],
-    fields: dict[str, list[str]],
+    fields: Fields,
 ) -> str:
     """Enrol or find the person, with their consent; returns what proves who they are.
 
@@ -47,7 +49,8 @@ def join(
         raise FormUsedError("this form is not ours, or too old")
     if not simulated:
         address = request.client.host if request.client else ""
-        limits.count(here.db, limits.JOINING, who_hash(here.secret, address))
+        who = who_hash(here.secret, address)
+        await run_in_threadpool(limits.count, here.db, limits.JOINING, who)
     newcomer = Newcomer(
         arrival=to_store(here.secret, study, arrival.values),
         person_key=person_key(here.secret, study, arrival.values),
@@ -58,11 +61,12 @@ def join(
         device={"user_agent_family": browser_family(request.headers.get("user-agent", ""))},
     )
     agreed = _agreement(study, language_of(study, wishes), fields)
-    arrived = here.db.run(lambda: entering(here.db, study, newcomer, agreed=agreed))
+    enter = partial(entering, here.db, study, newcomer, agreed=agreed)
+    arrived = await here.writer.write(enter, is_gated=True)
     return arrived.token or sign_participant(here.secret, arrived.participant.public_id)
 
 
-def _agreement(study: Study, language: str, fields: dict[str, list[str]]) -> dict[str, Any]:
+def _agreement(study: Study, language: str, fields: Fields) -> dict[str, Any]:
     """Return what is kept of the agreement: which text, in which language, and what was ticked."""
     words = consent_words(study.definition, catalogue(language))
     terms = study.definition.consent

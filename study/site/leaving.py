@@ -22,7 +22,6 @@ from study.site.access import (
     participant_by,
     redirect,
     remember,
-    to_current,
 )
 from study.site.arrival import ARRIVAL_COOKIE
 from study.site.forms import first, read_form
@@ -33,12 +32,6 @@ from study.site.place import Here
 router = APIRouter(default_response_class=HTMLResponse)
 STOPPED = "stopped"
 IDLE_S = int(participants.IDLE.total_seconds())
-
-
-@router.get("/continue")
-def go_on(here: Here, visitor: MaybeVisitor) -> Response:
-    """Lead a participant to where they are."""
-    return redirect("/") if visitor is None else to_current(here, visitor)
 
 
 @router.get("/resume/{token}", name="resume")

@@ -15,10 +15,11 @@ from fastapi.responses import JSONResponse
 
 from study.data import answers, events, participants, views
 from study.data.errands import Errand, Make
+from study.data.steps import DRAFTED
 from study.data.studies import Study
 from study.design.certificate import judge
 from study.design.questions import AnswerError, read_answers
-from study.site.about import DRAFTED, questions_about
+from study.site.about import questions_about
 from study.site.access import as_visitor
 from study.site.asker import Asker, by_outbox, locked, study_of
 from study.site.entries import BODY, AnswerEntry, AnyEntry, PlayEntry, ProblemEntry, read_entry

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import secrets
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from types import SimpleNamespace
 from typing import Any, Final
@@ -20,6 +20,7 @@ from study.data.progress import Step
 from study.data.trials import Trial
 from study.design.questions import AnswerError
 from study.site.access import Visitor
+from study.site.casting import blank_visitor, visitors_own
 from study.site.frame import shared, words_of
 from study.site.media import clip_url
 from study.site.mould import place
@@ -122,11 +123,6 @@ def _own(shown: Shown, text: Say) -> dict[str, Any]:
 
 def _blank_page(shown: Shown, parts: Parts, alike: Mapping[str, Any], *, steps: int) -> str:
     """Render the page with places for whatever is one trial's and one visitor's own."""
-    nobody = replace(shown.visitor.participant, public_id=place("name"))
-    # No token, so that nothing in a mould can be the personal link of whom it was made for.
-    visitor = replace(
-        shown.visitor, participant=nobody, token="", csrf=place("csrf"), outbox=place("outbox")
-    )
     own = {
         **{name: place(name) for name in ("heading", "position", "clip_url", "code", "key")},
         "steps": [place(f"step-{n}") for n in range(steps)],
@@ -134,7 +130,7 @@ def _blank_page(shown: Shown, parts: Parts, alike: Mapping[str, Any], *, steps: 
         "next_clips": [place("next_clips")],
     }
     blank = {"rows": parts.rows, "blank": parts.blank, "answers": {}, "faults": {}, "note": ""}
-    return _rendered(shown, {**alike, **own}, visitor, **blank)
+    return _rendered(shown, {**alike, **own}, blank_visitor(shown.visitor), **blank)
 
 
 def _filling(own: Mapping[str, Any], visitor: Visitor) -> dict[str, object]:
@@ -144,9 +140,7 @@ def _filling(own: Mapping[str, Any], visitor: Visitor) -> dict[str, object]:
         **{f"step-{n}": step for n, step in enumerate(own["steps"])},
         **{name: getattr(own["clip"], name) for name in _CLIP},
         "next_clips": ",".join(own["next_clips"]),
-        "name": visitor.name,
-        "csrf": visitor.csrf,
-        "outbox": visitor.outbox,
+        **visitors_own(visitor),
     }
 
 
