@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 import numpy.typing as npt
+from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats, Indices, base_mesh
 from renderer.body.phenotype import target_offsets
@@ -70,7 +71,7 @@ def pieces(person: Person) -> list[Piece]:
     trousers = 5.0 + 7.0 * np.clip((-250 - base[:, 1]) / 300, 0, 1)
     found = [
         Piece("skin", body[is_head], still, skin, 1900, _face_detail(base)),
-        Piece("skin", body[is_hand], still, skin, 560),
+        Piece("skin", body[is_hand], still, skin, 480),
         Piece(
             "top",
             tights[is_top & is_covered],
@@ -156,21 +157,24 @@ def _paint_face(skin: Floats, base: Floats) -> None:
 
 def _scalp(person: Person, base: Floats, body: Indices) -> Piece:
     """Return short hair: the scalp lifted off the skull, thinner towards the hairline."""
-    above = base[:, 1] - np.interp(base[:, 2], *_HAIRLINE)
     centre = _quad_centres("body")
     row = np.interp(centre[:, 2], *_HAIRLINE)
-    is_hair = (centre[:, 1] > row) & (np.abs(centre[:, 0]) < 90)
+    triangles = body[(centre[:, 1] > row) & (np.abs(centre[:, 0]) < 90)]
+    rim = np.unique(open_edges(triangles))
+    shift = _snap(base, rim)
+    # Where the line runs up behind the ear its height says little: hair is thin near its rim.
+    within = np.asarray(cKDTree(base[rim] + shift[rim]).query(base)[0])
+    within[rim] = 0.0
     lumps = 1 + 0.12 * np.sin(base @ [0.19, 0.07, 0.13]) * np.sin(base @ [-0.11, 0.23, 0.17])
-    push = (1.5 + 11.5 * np.clip(above / 45, 0, 1) ** 0.7) * lumps
+    push = (1.5 + 11.5 * np.clip(within / 45, 0, 1) ** 0.7) * lumps
     streaks = 1 + 0.18 * np.sin(base @ [0.9, 0.2, 0.35])
     surface = _flat(person.hair, len(base))
     surface[:, :3] *= streaks[:, None]
-    return Piece("hair", body[is_hair], push, surface, 420, shift_mm=_snap(base, body[is_hair]))
+    return Piece("hair", triangles, push, surface, 420, shift_mm=shift, turned_in_above_mm=0.0)
 
 
-def _snap(base: Floats, triangles: Indices) -> Floats:
+def _snap(base: Floats, rim: Indices) -> Floats:
     """Return shifts (n, 3) that bring the rim of the hair on the hairline: no jags."""
-    rim = np.unique(open_edges(triangles))
     shift = np.zeros_like(base)
     for _ in range(4):  # the shortest way there, sideways where the line is steep
         y, z = (base[rim] + shift[rim]).T[1:]

@@ -13,8 +13,8 @@ import numpy.typing as npt
 from renderer.body.makehuman import Floats, Indices
 from renderer.body.normals import unit
 
-TURNED_IN_MM: Final = 14.0  # into the neck, which stands 4 to 10 mm behind a collar
-TURNED_DOWN_MM: Final = 4.0
+TURNED_IN_MM: Final = 26.0  # into the neck, which stands up to 18 mm behind a collar
+TURNED_DOWN_MM: Final = 6.0
 
 
 def open_edges(triangles: Indices) -> Indices:

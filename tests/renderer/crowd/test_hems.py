@@ -1,0 +1,82 @@
+"""Clothes at the neck are closed against it, whoever looks over a collar; hair lies on the skin."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from renderer.body.makehuman import Floats, Indices
+from renderer.crowd.bodies import cached_body
+from renderer.crowd.cast import CAST, TEMPLATES
+from renderer.crowd.dress import PARTS
+from renderer.crowd.figure import Body
+from renderer.crowd.hems import TURNED_DOWN_MM, TURNED_IN_MM, hem, open_edges
+
+NAMES = ("left", "elder", "right")
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def body(request: pytest.FixtureRequest) -> Body:
+    name: str = request.param
+    return cached_body(TEMPLATES[name])
+
+
+def part(body: Body, name: str) -> Indices:
+    is_part = body.parts == PARTS.index(name)
+    return np.asarray(body.triangles[is_part[body.triangles].all(axis=1)])
+
+
+def above_skin_mm(body: Body, rows: Indices) -> Floats:
+    """Return how far vertices stand off the nearest skin, along its normal."""
+    skin = np.unique(part(body, "skin"))
+    _, near = cKDTree(body.positions_mm[skin]).query(body.positions_mm[rows])
+    off = body.positions_mm[rows] - body.positions_mm[skin[near]]
+    return np.asarray((off * body.normals[skin[near]]).sum(axis=1))
+
+
+def test_open_edges_are_those_of_one_triangle() -> None:
+    square = np.array([[0, 1, 2], [0, 2, 3]])
+    assert sorted(map(tuple, open_edges(square).tolist())) == [(0, 1), (1, 2), (2, 3), (3, 0)]
+
+
+def test_a_hem_goes_on_over_the_edge_and_inwards() -> None:
+    tube = np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 1], [1, 1, 0]])
+    normals = np.tile([0.6, 0.0, 0.8], (4, 1))
+    triangles = np.array([[0, 1, 3], [0, 3, 2]])
+    rows, places, _, more = hem(tube, normals, triangles, is_hem=tube[:, 1] > 0.5)
+    np.testing.assert_array_equal(rows, [2, 3, 2, 3])
+    np.testing.assert_allclose(places[:2], tube[2:])
+    moved = places[2:] - tube[2:]
+    np.testing.assert_allclose(moved @ normals[0], -TURNED_IN_MM)
+    np.testing.assert_allclose(moved[:, 1], -TURNED_DOWN_MM)
+    corners = np.concatenate([tube, places])[more]
+    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert (facing[:, 1] > 0.0).all()  # who looks down at the collar sees it
+
+
+def test_a_collar_ends_within_the_neck(body: Body) -> None:
+    """Nothing is seen between cloth and neck: its last edge is under the skin."""
+    edges = open_edges(part(body, "top"))
+    neck_mm = body.positions_mm[edges[:, 0], 1].max() - 75.0
+    last = np.unique(edges[(body.positions_mm[edges, 1] > neck_mm).all(axis=1)])
+    # Of three rows that end there the cloth's own and the hem's first lie on each other.
+    heights = np.sort(above_skin_mm(body, last))
+    assert heights[: len(heights) // 3].max() < 0.0
+    assert heights.max() < 20.0
+
+
+def test_short_hair_begins_on_the_skin(body: Body) -> None:
+    edges = open_edges(part(body, "hair"))
+    heights = above_skin_mm(body, np.unique(edges))
+    front = body.positions_mm[np.unique(edges), 2] > 30.0  # long hair hangs down behind
+    assert np.median(heights[front & (heights > 0.0)]) < 4.0
+    assert (heights[front] < 0.0).mean() > 0.3  # its hem is within
+
+
+def test_nobody_wears_the_colour_of_skin() -> None:
+    skins = np.array([person.skin for person in CAST])
+    for person in CAST:
+        top = np.array(person.top)
+        hue = skins / skins.sum(axis=1, keepdims=True)
+        assert np.abs(hue - top / top.sum()).max(axis=1).min() > 0.05, person.name
