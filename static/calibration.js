@@ -143,6 +143,7 @@ export function startCalibration(main, { start }) {
   function measureDistance(moved) {
     report.moved = moved;
     find("[data-frame]").hidden = true;
+    scrollTo(0, 0);
     spot = new BlindSpot(find("[data-spot-stage]"), {
       moved,
       repetitions: number("repetitions"),

@@ -42,7 +42,7 @@ export async function download({ url, bytes }, options) {
     if (!url.includes(sha256)) throw new Error("HASH");
     // The type matters: Safari does not play an untyped blob.
     const blob = new Blob(parts, { type: "video/mp4" });
-    return { blob, sha256, codec: codecOf(parts) };
+    return { blob, sha256, codec: await codecOf(blob) };
   } catch (error) {
     throw watch.hasStalled ? new Error("STALL") : error;
   } finally {

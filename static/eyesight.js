@@ -1,7 +1,7 @@
 // Eyesight: rings with a gap, then plates. Answers go to the server, which alone knows the plates.
 
 import { submitPatiently } from "./navigate.js";
-import { drawRing, Staircase } from "./rings.js";
+import { drawRing, LARGEST_PX, Staircase } from "./rings.js";
 import { text } from "./texts.js";
 
 const KEYS = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
@@ -66,6 +66,7 @@ export function startEyesight(main, { start }) {
   }
 
   function rings() {
+    find(".ring-answers").style.setProperty("--largest", `${LARGEST_PX / devicePixelRatio}px`);
     show("rings");
     nextRing();
   }

@@ -39,6 +39,8 @@ export class Player {
     on(this.video, "ended", () => this.end());
     // Keys of the keyboard and power savers may pause a video; there is no control to go on with.
     on(this.video, "pause", () => this.video.ended || this.interrupt("paused"));
+    // Somebody puts another file in the place of the clip: nothing on this page does during a play.
+    on(this.video, "emptied", () => this.interrupt("replaced"));
     for (const button of stage.querySelectorAll("[data-play]")) {
       button.addEventListener("click", () => this.play());
     }
@@ -77,6 +79,7 @@ export class Player {
       this.video.src = url;
       this.video.load();
     });
+    this.address = this.video.currentSrc;
     const { videoWidth, videoHeight } = this.video;
     if (videoWidth !== this.options.width || videoHeight !== this.options.height) {
       throw new Error(`SIZE-${videoWidth}x${videoHeight}`);
@@ -189,6 +192,7 @@ export class Player {
   finish(endedBy, state) {
     clearInterval(this.watchdog);
     const play = { ...this.record.finish(endedBy), ...this.facts };
+    if (this.video.currentSrc !== this.address) play.clip_sha256 = ""; // not the file that was checked
     this.record = null;
     this.decoded = this.video.getVideoPlaybackQuality?.().totalVideoFrames ?? 0;
     this.state = state;

@@ -3,6 +3,7 @@
 // Gaps in the screen's own pixels, in steps of about a tenth of a logarithm.
 const GAPS_PX = [40, 32, 25, 20, 16, 13, 10, 8, 6, 5, 4, 3, 2, 1];
 const FIRST_PX = 20;
+export const LARGEST_PX = 5.5 * GAPS_PX[0]; // the largest ring, with a little white around it
 const MOST_RINGS = 60;
 
 /** Finds the smallest gap that is told reliably: quickly down, then several rings at each size. */

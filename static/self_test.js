@@ -1,6 +1,10 @@
 // The self-test: what this browser makes of a clip whose colours are known, and by which decoder.
 
+import { codecOf, decodingFacts } from "./codec.js";
+
 const PATIENCE_MS = 8000;
+const FPS = 30;
+const LARGEST_BIT_S = 12e6; // of our largest clips
 
 /**
  * Return {codec, is_smooth, is_power_efficient, patches}; rejects where the clip does not play.
@@ -9,49 +13,24 @@ const PATIENCE_MS = 8000;
 export async function selfTest(url, layout, size) {
   const answer = await fetch(url);
   if (!answer.ok) throw new Error(`HTTP-${answer.status}`);
-  const bytes = await answer.arrayBuffer();
-  const codec = codecOf(new Uint8Array(bytes));
-  const address = URL.createObjectURL(new Blob([bytes], { type: "video/mp4" }));
+  const clip = new Blob([await answer.arrayBuffer()], { type: "video/mp4" });
+  const codec = await codecOf(clip);
+  const [width, height] = size.split("x").map(Number);
+  const found = await decodingFacts({ codec, width, height, fps: FPS, bitrate: LARGEST_BIT_S });
+  const address = URL.createObjectURL(clip);
   const video = document.createElement("video");
   try {
     await firstFrame(video, address);
-    return { codec, ...(await decoding(codec, size)), patches: patchesOf(video, layout) };
+    return {
+      codec,
+      is_smooth: found.decoding_smooth,
+      is_power_efficient: found.decoding_efficient,
+      patches: patchesOf(video, layout),
+    };
   } finally {
     video.removeAttribute("src");
     video.load();
     URL.revokeObjectURL(address);
-  }
-}
-
-/** The codec's name (RFC 6381) from the file's own avcC box: profile, constraints, level. */
-function codecOf(bytes) {
-  const mark = [0x61, 0x76, 0x63, 0x43]; // "avcC"
-  for (let i = 0; i < bytes.length - 8; i += 1) {
-    if (mark.every((byte, k) => bytes[i + k] === byte)) {
-      const named = Array.from(bytes.slice(i + 5, i + 8), (b) => b.toString(16).padStart(2, "0"));
-      return `avc1.${named.join("")}`;
-    }
-  }
-  return "";
-}
-
-async function decoding(codec, size) {
-  const [width, height] = size.split("x").map(Number);
-  const asked = {
-    type: "file",
-    video: {
-      contentType: `video/mp4; codecs="${codec}"`,
-      width,
-      height,
-      bitrate: 12e6, // of our largest clips
-      framerate: 30,
-    },
-  };
-  try {
-    const found = await navigator.mediaCapabilities.decodingInfo(asked);
-    return { is_smooth: found.smooth, is_power_efficient: found.powerEfficient };
-  } catch {
-    return { is_smooth: null, is_power_efficient: null };
   }
 }
 

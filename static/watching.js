@@ -37,7 +37,7 @@ export function startWatching(main, options) {
     onFirstFrame: options.onFirstFrame,
     onPlay: played,
     onBroken: broken,
-    onTooSmall: () => (player.state = "small"),
+    onTooSmall: () => offer("small"),
   });
   player.isWatched = viewsLeft === 0;
   stage.querySelector("[data-reload]").addEventListener("click", load);
@@ -94,14 +94,14 @@ export function startWatching(main, options) {
     speakUp();
     clips.forget(clip.url);
     stage.querySelector("[data-code]").textContent = `${main.dataset.code}-${code}`;
-    player.state = "broken";
+    offer("broken");
     options.onBroken(code);
   }
 
   async function played(play) {
     speakUp();
     const verdict = options.onPlay({ ...play, wake_lock: wakeState() });
-    if (!play.is_complete) return;
+    if (!play.is_complete) return offer(player.state);
     viewsLeft = Math.max(0, viewsLeft - 1);
     viewsAllowed -= 1;
     player.isWatched = viewsLeft === 0;
@@ -110,9 +110,15 @@ export function startWatching(main, options) {
     const asksAgain = retries > 0 && (await withinTime(verdict))?.certified === false;
     if (player.state !== "judging") return; // played again in the meantime
     if (asksAgain) retries -= 1;
-    player.state = !player.isWatched ? "ready" : asksAgain ? "again" : "watched";
     allowAgain();
-    stage.querySelector(`[data-when='${player.state}'] button`).focus({ preventScroll: true });
+    offer(!player.isWatched ? "ready" : asksAgain ? "again" : "watched");
+  }
+
+  /** Show what can be done now, under the fingers of those who use the keyboard. */
+  function offer(state) {
+    player.state = state;
+    if (main.querySelector(".questions").contains(document.activeElement)) return;
+    stage.querySelector(`[data-when='${state}'] button`).focus({ preventScroll: true });
   }
 
   /** Take the buttons away that play once more, where the study file says how often at most. */

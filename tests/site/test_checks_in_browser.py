@@ -272,6 +272,33 @@ def test_an_eyesight_test_can_be_left_out_at_every_step(site: Any, page: Page) -
     assert (report["rings_skipped"], report["plates_skipped"], report["digits"]) == (True, True, [])
 
 
+SEEN_WHOLE = """(what) => {
+  const [part, place] = [document.querySelector(what), document.querySelector(what).parentElement];
+  const [inner, outer] = [part, place].map((one) => one.getBoundingClientRect());
+  const { clientHeight } = document.documentElement;
+  return outer.left <= inner.left && inner.right <= outer.right && outer.top <= inner.top
+    && inner.bottom <= outer.bottom && inner.top >= 0 && inner.bottom <= clientHeight;
+}"""
+LAPTOPS: Any = ({"width": 1366, "height": 768}, {"width": 683, "height": 384})  # as it is, at 200 %
+
+
+def test_the_largest_ring_and_every_plate_are_seen_whole(site: Any, page: Page) -> None:
+    enter(page, site, "device_check", "calibration")
+    page.locator("[data-begin]").click()
+    page.locator("[data-start=rings]").click()
+    for _ in range(5):  # one ring of the first size, two of each larger one
+        page.locator("[data-direction='']").click()
+    assert page.locator("[data-ring]").evaluate("(ring) => ring.width") == 5 * 40
+    for size in LAPTOPS:
+        page.set_viewport_size(size)
+        assert page.evaluate(SEEN_WHOLE, "[data-ring]"), size
+    page.locator("[data-stage=rings] [data-skip]").click()
+    page.locator("[data-start=plates]").click()
+    for size in LAPTOPS:
+        page.set_viewport_size(size)
+        assert page.evaluate(SEEN_WHOLE, "[data-plate]"), size
+
+
 SHOWN = """(stage) => {
   for (const part of document.querySelectorAll("[data-stage]")) {
     part.hidden = part.dataset.stage !== stage;

@@ -86,12 +86,14 @@ def test_a_broken_clip_stops_with_a_code_and_a_next_step(site: Any, page: Page, 
     page.route("**/clips/*.mp4", lambda route: route.fulfill(status=404))
     page.reload()
     visit.state("broken")
+    again = page.locator(".card[data-when=broken]").get_by_role("button", name="Try again")
+    expect(again).to_be_focused()
     expect(page.locator(".card[data-when=broken] .code")).to_have_text(
         re.compile(r"^P-[0-9A-Z]{8}-1-HTTP-404$")
     )
     visit.saved("Saved")
     page.unroute("**/clips/*.mp4")
-    page.locator(".card[data-when=broken]").get_by_role("button", name="Try again").click()
+    again.click()
     visit.state("ready")
     problems = [e.payload for e in events.history(site.db, site.people()[0]) if e.kind == "problem"]
     assert problems == [{"code": "CLIP-HTTP-404"}]

@@ -180,6 +180,17 @@ def test_escape_ends_a_play_and_shows_the_way_to_stop(visit: Any, page: Page) ->
     assert (play["is_complete"], play["ended_by"]) == (False, "stopped")
     visit.state("interrupted")
     expect(page.get_by_role("link", name="Stop")).to_be_visible()
+    expect(page.get_by_role("button", name="Play from the start")).to_be_focused()
+
+
+def test_another_file_in_the_clips_place_does_not_pass_for_it(visit: Any, page: Page) -> None:
+    visit.straight_to_trial()
+    visit.state("ready")
+    page.evaluate("document.querySelector('video').src += '#t=0'")
+    assert "other-clip" in judge(play_again(visit), RULE).reasons
+    during_the_play(page, "video.load()")
+    play = play_again(visit)
+    assert (play["is_complete"], play["ended_by"]) == (False, "replaced")
 
 
 def test_a_reload_in_mid_clip_is_a_play_that_was_interrupted(
