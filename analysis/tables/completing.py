@@ -10,6 +10,7 @@ from typing import Final
 import pandas as pd
 
 from analysis.tables.columns import STANDARD_LODS
+from analysis.words.wording import listed
 
 UNSTATED: Final = "unstated"
 """The distance of ratings that come without one."""
@@ -40,7 +41,7 @@ def rank_faults(ratings: pd.DataFrame, source: str) -> list[str]:
         if len(lods) > 1:
             faults.append(
                 f"{source}: row {lods.index[1] + 2}, lod_rank: found {rank} for "
-                f"{' and '.join(lods)}; accepted: a rank for one LoD alone, 1 for the least"
+                f"{listed(lods.tolist())}; accepted: a rank for one LoD alone, 1 for the least"
             )
     return faults
 

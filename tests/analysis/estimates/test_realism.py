@@ -104,6 +104,21 @@ def test_expected_ratings_are_the_formula_without_style() -> None:
     assert found.expected()[0] == pytest.approx(wanted, abs=1e-9)
 
 
+def test_expected_ratings_are_those_of_many_drawn_people(crowd: Realism) -> None:
+    model, parameters = crowd.fit.model, crowd.fit.parameters
+    rng, people = np.random.default_rng(5), 200_000
+    leniency, scatter, stretch = model.spreads(parameters)[:, None] * rng.standard_normal(
+        (3, people)
+    )
+    tau = model.thresholds(parameters)
+    middle = (tau[1] + tau[2]) / 2
+    noise = np.exp(scatter) * rng.standard_normal(people)
+    for place, wanted in zip(crowd.latent()[0], crowd.expected()[0], strict=True):
+        percept = place + leniency + noise
+        above = [percept > middle + np.exp(stretch) * (cut - middle) for cut in tau]
+        assert wanted == pytest.approx(1 + np.sum(above, axis=0).mean(), abs=0.012)  # 4 errors
+
+
 def test_experts_and_sides_are_told_apart() -> None:
     tables = simulated(24, seed=3)
     about = tables.participants.set_index("participant")["works_with_graphics"]
