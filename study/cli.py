@@ -14,7 +14,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Final, NoReturn
 
-from study.commands.errors import USER_ERRORS, is_ours, one_line
+from study.commands.errors import USER_ERRORS, is_ours, name_place, one_line
 
 GROUPS: Final[Mapping[str, tuple[str, ...]]] = {
     "a study and its clips": ("run", "check", "power", "render", "worker", "figures"),
@@ -108,5 +108,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except USER_ERRORS as error:
         if os.environ.get("OCULARIST_TRACEBACK") or is_ours(error):
             raise
-        print(one_line(f"ocularist {options.command}", error), file=sys.stderr)
+        given = vars(options)
+        told = name_place(error, [given.get("out"), given.get("data")])
+        print(one_line(f"ocularist {options.command}", told), file=sys.stderr)
         return 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shlex
 import subprocess
@@ -12,6 +13,7 @@ import pytest
 
 from analysis.words.versions import own_version
 from study.cli import COMMANDS, build_parser, main
+from study.data.database import open_database
 
 ROOT = Path(__file__).parent.parent
 RATINGS = "participant,lod,rating\n" + "".join(
@@ -91,6 +93,15 @@ def test_an_unknown_command_is_one_line(capsys: pytest.CaptureFixture[str]) -> N
         (("still", "--environment-turn", "9"), "only a picture has one; give --environment FILE"),
         (("still", "--environment", "x.exr", "--sun", "0", "9"), "x.exr brings its own sun"),
         (("render", "--only", "8"), 'unknown clip "8"; the study has practice, 1, 2, 3'),
+        (("still", "--frame", "151"), "--frame 151: the clip has frames 1 to 150"),
+        (("still", "--azimuth", "nan"), '"nan" is no number; write one like 0.5'),
+        (("simulate", "--seed", "-1"), '"-1" is no whole number; write one from 0 on'),
+        (("check", "lod", "--translation", "../x"), '"../x" is no language; write its code'),
+        (("check", "lod", "--translation", "en"), "--translation en: the study's own language"),
+        (("run", "--data", "/dev/null/x"), "argument --data: /dev/null is a file, no folder"),
+        (("worker", "--data", "none"), "none/study.sqlite3: no such database; ocularist run"),
+        (("worker", "--database", "none.sqlite3"), "none.sqlite3: no such database"),
+        (("figures", "--bench", "none.json"), "none.json: No such file or directory"),
         (("serve", "--port", "70000"), '"70000" is no port; write a number from 1 to 65535'),
         (("run", "--tls-cert", "a.pem"), "TLS needs both --tls-cert and --tls-key"),
         (("export", "--database", "sqlite:///none.sqlite3"), "none.sqlite3: no such database"),
@@ -110,6 +121,20 @@ def test_an_error_is_one_clear_line(
     assert said.startswith(f"ocularist {arguments[0]}: ")
     assert words in said
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_is_told_with_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fill(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    open_database(str(tmp_path / "study.sqlite3")).close()
+    monkeypatch.setattr("study.commands.preparing.find_study", lambda *_: None)
+    monkeypatch.setattr("study.data.export.write", fill)
+    out = tmp_path / "tables"
+    said = fails_with(capsys, "export", "--data", str(tmp_path), "--out", str(out))
+    assert said == f"ocularist export: {out}: No space left on device"
 
 
 @pytest.mark.parametrize("command", ["check", "render"])

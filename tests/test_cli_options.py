@@ -15,8 +15,10 @@ from renderer.detail import EFFECTS, Detail
 from renderer.lod.choice import LodPolicy, LodStep
 from renderer.lod.policy import Evidence, PolicyFile, default_policy, write_policy
 from study.cli import build_parser, main
+from study.commands.analyse import source_of
+from study.commands.errors import CommandError
 from study.commands.eye_options import spec_of, viewpoint_of
-from study.commands.listening import address_of, check_port, welcome
+from study.commands.listening import address_of, check_certificate, check_port, welcome
 from study.commands.progress import time_left
 from study.commands.render import wanted
 from study.commands.researcher import new_password
@@ -166,6 +168,21 @@ def test_a_port_in_use_is_one_clear_line() -> None:
     check_port(Settings(port=port))
 
 
+def test_tls_files_are_looked_at_before_the_site_starts(tmp_path: Path) -> None:
+    notes, none = tmp_path / "notes.pem", tmp_path / "none.pem"
+    notes.write_text("no certificate")
+    check_certificate(Settings())
+    for cert, key in ((none, notes), (notes, none)):
+        with pytest.raises(FileNotFoundError) as missing:
+            check_certificate(Settings(tls_cert=cert, tls_key=key))
+        assert missing.value.filename == str(none)
+    with pytest.raises(
+        CommandError, match=r"notes\.pem: no certificate with its private key"
+    ) as bad:
+        check_certificate(Settings(tls_cert=notes, tls_key=notes))
+    assert "both have to be PEM files" in str(bad.value)
+
+
 def test_the_addresses_are_those_to_type_into_a_browser() -> None:
     assert address_of(Settings(port=8080)) == "http://127.0.0.1:8080"
     assert address_of(Settings(host="::1")) == "http://[::1]:8000"
@@ -225,3 +242,12 @@ def test_a_generated_password_is_printed_and_works(
 )
 def test_the_time_left_is_told_as_people_would(left_s: float | None, words: str) -> None:
     assert time_left(left_s) == words
+
+
+def test_analyse_takes_a_database_by_its_file_or_its_data_folder(tmp_path: Path) -> None:
+    open_database(str(tmp_path / "study.sqlite3")).close()
+    url = f"sqlite:///{tmp_path}/study.sqlite3"
+    assert source_of(str(tmp_path)) == source_of(str(tmp_path / "study.sqlite3")) == url
+    (tmp_path / "ratings.csv").write_text("participant,lod,rating\n")
+    for other in (str(tmp_path), str(tmp_path / "ratings.csv"), "none.csv", url):
+        assert source_of(other) == other

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from study.commands.processes import LONGEST_WAIT_S, STEADY_S, Kept, ending, stop_all
+from study.commands.errors import CommandError
+from study.commands.processes import LONGEST_WAIT_S, STEADY_S, Kept, ending, start_all, stop_all
 
 
 @dataclass
@@ -72,6 +73,22 @@ def test_a_process_that_ends_again_and_again_is_started_ever_later() -> None:
     waits = [crash_and_wait(scene, kept) for _ in range(8)]
     assert waits == [1, 2, 4, 8, 16, 32, LONGEST_WAIT_S, LONGEST_WAIT_S]
     assert scene.said[1] == "The renderer ended (status 1); starting it again in 2 s."
+
+
+def test_a_first_process_that_never_comes_up_is_told_and_not_started_again() -> None:
+    scene = Scene()
+    site, renderer = scene.keep("site"), scene.keep("renderer")
+
+    def is_up() -> bool:
+        if len(scene.started) == 2:
+            scene.started[0].status = 1
+        return False
+
+    with pytest.raises(CommandError, match=r"^the site ended before it answered \(status 1\)"):
+        start_all([site, renderer], is_up, poll_s=0)
+    assert len(scene.started) == 2
+    scene.started[0].status = None
+    start_all([site, renderer], lambda: True, poll_s=0)
 
 
 def test_a_process_that_ran_for_a_while_is_started_at_once() -> None:

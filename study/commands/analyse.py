@@ -1,6 +1,6 @@
 """``ocularist analyse``: figures, tables and a report from anyone's ratings.
 
-From files it needs neither web framework nor database nor GL; only a database's URL loads the one.
+From files it needs neither web framework nor database nor GL; only a database loads the one.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from study.commands.places import new_folder
+from study.commands.values import number
 
 if TYPE_CHECKING:
     from analysis import Tables
@@ -22,6 +23,7 @@ DESCRIPTION = (
     "stands on its own. Any table with the columns participant, lod and rating will do."
 )
 EXAMPLE = "tables --bench bench.json --out report"
+SQLITE: Final = b"SQLite format 3\0"  # how a database's file begins (sqlite.org/fileformat)
 WIDTH: Final = 96
 
 
@@ -30,7 +32,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "source",
         metavar="SOURCE",
-        help="a ratings file, the folder of an export, or a database's URL (its newest study)",
+        help="a ratings file, the folder of an export, or a database: its URL, file or data folder "
+        "(its newest study)",
     )
     parser.add_argument(
         "--out",
@@ -44,20 +47,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--realism-margin",
-        type=float,
+        type=number,
         metavar="POINTS",
         help="a loss of realism that does not matter (default: what the study declared, else 0.5)",
     )
     parser.add_argument(
         "--noticed-margin",
-        type=float,
+        type=number,
         metavar="SHARE",
         help="share of people, beyond false alarms, who may notice (default: what the study "
         "declared, else 0.25)",
     )
     parser.add_argument(
         "--confidence",
-        type=float,
+        type=number,
         metavar="SHARE",
         help="confidence of each bound, one-sided (default: what the study declared, else 0.95)",
     )
@@ -79,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
         "confidence": options.confidence,
     }
     Margins().changed(**asked)  # refuses what cannot be before anything is read
-    source = options.source
+    source = source_of(options.source)
     tables = _from_database(source) if "://" in source else read_source(source)
     margins = tables.margins.changed(**asked)
     summary = analyse(
@@ -94,6 +97,17 @@ def run(options: argparse.Namespace) -> int:
         print("\n".join(textwrap.wrap(line, WIDTH, break_on_hyphens=False)))
     print(summary.report)
     return 0
+
+
+def source_of(source: str) -> str:
+    """Return the URL of a database named by its file or data folder; else the source as it is."""
+    path = Path(source)
+    if path.is_dir() and not (path / "ratings.csv").exists():
+        path = path / "study.sqlite3"
+    if not path.is_file():
+        return source
+    with path.open("rb") as file:
+        return f"sqlite:///{path}" if file.read(len(SQLITE)) == SQLITE else source
 
 
 def _from_database(url: str) -> Tables:

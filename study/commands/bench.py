@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from study.commands.errors import CommandError
-from study.commands.options import size
 from study.commands.places import new_file
+from study.commands.values import size
 
 if TYPE_CHECKING:
     from renderer.benchmark.plan import Progress

@@ -9,8 +9,8 @@ from typing import Any
 
 from study.commands.errors import CommandError
 from study.commands.eye_options import iris
-from study.commands.options import count
 from study.commands.places import new_folder
+from study.commands.values import count, whole_number
 
 HELP = "compare the eye with a path tracer's"
 DESCRIPTION = (
@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="which iris, such as 7, brown or 7:brown; repeatable (default: 1:blue and 7:brown)",
     )
     parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="the path tracer's (default: 0)"
+        "--seed", type=whole_number, default=0, metavar="N", help="the path tracer's (default: 0)"
     )
 
 

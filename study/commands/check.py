@@ -8,8 +8,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
-from study.commands.options import add_study, count
+from study.commands.errors import CommandError
+from study.commands.options import add_study
 from study.commands.pictures import check_pictures
+from study.commands.values import count, language
 
 if TYPE_CHECKING:
     from study.design.attention import Attention
@@ -44,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--translation",
+        type=language,
         metavar="LANGUAGE",
         help="only write a file to translate: every text that participants read, in its place",
     )
@@ -57,6 +60,8 @@ def run(options: argparse.Namespace) -> int:
     if options.translation is not None:
         from study.design.translation_file import translation_lines
 
+        if options.translation == definition.language:
+            raise CommandError(f"--translation {options.translation}: the study's own language")
         lines = translation_lines(definition, options.translation)
     elif options.order is not None:
         lines = order_lines(definition, options.order)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Final
 
 
@@ -13,6 +16,7 @@ class CommandError(Exception):
 # fit, OSError for files and ports, RuntimeError for a missing driver, ImportError for a part that
 # this machine was set up without. Anything else is our mistake and shows its traceback.
 USER_ERRORS: Final = (CommandError, ValueError, OSError, RuntimeError, ImportError)
+_OF_A_DISK: Final = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS}
 
 
 def is_ours(error: Exception) -> bool:
@@ -24,6 +28,16 @@ def is_ours(error: Exception) -> bool:
 def one_line(place: str, error: Exception) -> str:
     """Write an error as ``place: message``, one line per fault that the message holds."""
     return "\n".join(f"{place}: {line}" for line in message_of(error).splitlines())
+
+
+def name_place(error: Exception, places: Sequence[Path | None]) -> Exception:
+    """Say where: a full disk ends a write without naming what was written.
+
+    ``places`` are those that the command writes to; the first that is there is named.
+    """
+    if isinstance(error, OSError) and error.errno in _OF_A_DISK and error.filename is None:
+        error.filename = next((str(place) for place in places if place is not None), None)
+    return error
 
 
 def message_of(error: Exception) -> str:

@@ -9,7 +9,7 @@ import argparse
 from pathlib import Path
 
 from study.commands.eye_options import SIDES, effect_level, iris
-from study.commands.options import count, size
+from study.commands.values import count, number, size, whole_number
 
 
 def add_picture(parser: argparse.ArgumentParser) -> None:
@@ -61,13 +61,13 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--azimuth",
-        type=float,
+        type=number,
         default=0.0,
         metavar="DEG",
         help="camera to the viewer's right of the face, in degrees (default: %(default)g)",
     )
     parser.add_argument(
-        "--elevation", type=float, default=0.0, metavar="DEG", help="camera above the eyes"
+        "--elevation", type=number, default=0.0, metavar="DEG", help="camera above the eyes"
     )
     parser.add_argument(
         "--frame", type=count, metavar="N", help="the N-th frame of the clip instead of --azimuth"
@@ -83,24 +83,24 @@ def _add_eyes(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--gaze",
         nargs=2,
-        type=float,
+        type=number,
         default=(0.0, 0.0),
         metavar=("YAW", "PITCH"),
         help="direction of both eyes in degrees, to the viewer's right and up",
     )
     parser.add_argument(
-        "--vergence", type=float, default=0.0, metavar="DEG", help="angle between the two gazes"
+        "--vergence", type=number, default=0.0, metavar="DEG", help="angle between the two gazes"
     )
     parser.add_argument(
         "--blink",
-        type=float,
+        type=number,
         default=0.0,
         metavar="SHARE",
         help="how far the lids are closed, 0 (default) to 1",
     )
     parser.add_argument(
         "--subsurface-samples",
-        type=int,
+        type=whole_number,
         default=0,
         metavar="N",
         help="the thesis's own sum with 2 to 200 samples instead of our integrator (0, default)",
@@ -124,7 +124,7 @@ def _add_eyes(parser: argparse.ArgumentParser) -> None:
         metavar="SEED|COLOUR|SEED:COLOUR|FILE",
         help="which iris, such as 7, brown or 7:brown, or a file from ocularist iris",
     )
-    parser.add_argument("--pupil", type=float, metavar="MM", help="diameter of the pupil in mm")
+    parser.add_argument("--pupil", type=number, metavar="MM", help="diameter of the pupil in mm")
 
 
 def _add_surroundings(parser: argparse.ArgumentParser) -> None:
@@ -139,23 +139,23 @@ def _add_surroundings(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--environment-turn",
-        type=float,
+        type=number,
         metavar="DEG",
         help="turn that picture to the viewer's right",
     )
     parser.add_argument(
         "--environment-exposure",
-        type=float,
+        type=number,
         metavar="EV",
         help="brighten that picture, in stops; 0 (default): a white ball's brightest side is white",
     )
     parser.add_argument(
         "--sun",
         nargs=2,
-        type=float,
+        type=number,
         metavar=("AZIMUTH", "ELEVATION"),
         help="direction of the park's sun in degrees",
     )
     parser.add_argument(
-        "--crowd", type=int, choices=CROWDS, help="number of other characters in the scene"
+        "--crowd", type=whole_number, choices=CROWDS, help="number of other characters in the scene"
     )

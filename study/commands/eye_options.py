@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from study.commands.errors import CommandError
-from study.commands.options import reading
+from study.commands.values import reading
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
@@ -58,6 +58,8 @@ def viewpoint_of(options: argparse.Namespace, spec: ClipSpec) -> dict[str, float
             "elevation_deg": options.elevation,
             "time_s": 0.0,
         }
+    if options.frame > spec.frame_count:
+        raise CommandError(f"--frame {options.frame}: the clip has frames 1 to {spec.frame_count}")
     frame = options.frame - 1
     return {
         "azimuth_deg": spec.azimuth_deg(frame),

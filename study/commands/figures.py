@@ -33,6 +33,8 @@ def run(options: argparse.Namespace) -> int:
     from study.worker_names import is_dead, worker_name
 
     settings = settings_of(options)
+    if options.bench is not None:
+        options.bench.open("rb").close()  # said now, not with the first figures
     db = open_existing(settings)
     try:
         if options.claimed_by:
@@ -44,5 +46,11 @@ def run(options: argparse.Namespace) -> int:
             drawn += draw_claimed(db, worker=name, bench=settings.bench_file)
     finally:
         db.close()
-    print(f"{drawn} sets of figures drawn" if drawn != 1 else "1 set of figures drawn")
+    print(_told(drawn))
     return 0
+
+
+def _told(drawn: int) -> str:
+    if drawn == 0:
+        return "nothing to draw: no new answers, or nobody has the results switched on"
+    return f"{drawn} sets of figures drawn" if drawn != 1 else "1 set of figures drawn"

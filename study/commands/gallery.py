@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from study.commands.options import size
 from study.commands.places import new_folder
+from study.commands.values import size
 
 if TYPE_CHECKING:
     from renderer.gallery.strips import Strip

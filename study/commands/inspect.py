@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from study.commands.eye_arguments import add_picture
 from study.commands.eye_options import spec_of
-from study.commands.options import port
+from study.commands.values import port
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from study.commands.errors import CommandError
 from study.commands.places import new_file, new_folder
+from study.commands.values import number
 
 if TYPE_CHECKING:
     from renderer.unrefraction.recovery import Recovery
@@ -37,19 +38,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--limbus-mm",
-        type=float,
+        type=number,
         default=11.7,
         metavar="MM",
         help="true width of the visible iris (default: %(default)s)",
     )
     parser.add_argument(
         "--focal",
-        type=float,
+        type=number,
         metavar="MM",
         help="focal length, 35 mm equivalent, of an uncropped photograph that does not say it",
     )
     parser.add_argument(
-        "--distance", type=float, metavar="MM", help="from the camera to the eye, if you know it"
+        "--distance", type=number, metavar="MM", help="from the camera to the eye, if you know it"
     )
     parser.add_argument(
         "--no-drawing", action="store_true", help="leave the drawn eye out of the preview: no GL"

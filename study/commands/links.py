@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
-from study.commands.options import add_listening, add_places, add_study, count, settings_of
+from study.commands.options import add_listening, add_places, add_study, settings_of
 from study.commands.places import new_file
+from study.commands.values import count
 
 if TYPE_CHECKING:
     from study.data.links import NewLink
@@ -50,13 +51,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Make the links and say where they are."""
     from study.commands.listening import address_of
-    from study.commands.preparing import prepare
+    from study.commands.preparing import prepare, tell_if_new
     from study.data import links
 
     if options.count > MOST:
         raise CommandError(f"--count {options.count}: make at most {MOST} links at a time")
     settings = settings_of(options)
     url = _site(options.url) if options.url else address_of(settings)
+    tell_if_new(settings)
     prepared = prepare(settings, options.study)
     out = options.out or Path(f"links-{prepared.study.key}.csv")
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import socket
+import ssl
 from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
@@ -41,6 +42,27 @@ def check_port(settings: Settings) -> None:
         socket.create_server((settings.host, settings.port), family=family).close()
     except OSError as error:
         raise CommandError(_why_no_port(error, settings)) from None
+
+
+def check_certificate(settings: Settings) -> None:
+    """Raise CommandError, or OSError naming a file, if the site could not speak TLS with these."""
+    cert, key = settings.tls_cert, settings.tls_key
+    if cert is None or key is None:
+        return
+    for file in (cert, key):  # ssl's own error does not say which
+        file.open("rb").close()
+    try:
+        # Without the callback OpenSSL would ask the terminal for a password.
+        ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(cert, key, password=lambda: "")
+    except (ssl.SSLError, ValueError) as error:
+        raise CommandError(
+            f"{cert} and {key}: no certificate with its private key ({_reason(error)}); both have "
+            "to be PEM files, and the key may not be locked with a password"
+        ) from None
+
+
+def _reason(error: Exception) -> str:
+    return getattr(error, "reason", None) or str(error)
 
 
 def _why_no_port(error: OSError, settings: Settings) -> str:

@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
-from study.commands.options import count
 from study.commands.places import new_file
+from study.commands.values import count, number
 
 if TYPE_CHECKING:
     from study.load.report import Figures
@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=count, default=20, help="per run (default: 20)")
     parser.add_argument(
         "--pause",
-        type=float,
+        type=number,
         default=0.0,
         metavar="S",
         help="mean seconds between two requests of one person (default: none)",
@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--below",
-        type=float,
+        type=number,
         default=100.0,
         metavar="MS",
         help="what is in time for --find: p95 of all requests (default: 100)",

@@ -1,4 +1,4 @@
-"""Options that several commands share, and how their texts are read.
+"""Options that several commands share.
 
 A level is never read without its effect's or eye's name beside it, nor a distance without
 ``--distance``: the word "medium" alone could be either.
@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Final
+
+from study.commands.places import data_folder
+from study.commands.values import port
 
 if TYPE_CHECKING:
     from study.settings import Settings
-
-T = TypeVar("T")
 
 DEFAULT_STUDY: Final = "thesis"
 
@@ -37,7 +36,7 @@ def add_places(parser: argparse.ArgumentParser) -> None:
     """Add --data, --database and --media: the places where a study's data lie."""
     parser.add_argument(
         "--data",
-        type=Path,
+        type=data_folder,
         metavar="DIR",
         help="folder of everything that is stored (default: ocularist-data)",
     )
@@ -93,40 +92,3 @@ def settings_of(options: argparse.Namespace) -> Settings:
         tls_cert=given.get("tls_cert"),
         tls_key=given.get("tls_key"),
     )
-
-
-def reading(read: Callable[[str], T]) -> Callable[[str], T]:
-    """Let argparse show the message of a reader's ValueError instead of a general one."""
-
-    def convert(text: str) -> T:
-        try:
-            return read(text)
-        except ValueError as error:
-            raise argparse.ArgumentTypeError(str(error)) from None
-
-    return convert
-
-
-@reading
-def size(text: str) -> tuple[int, int]:
-    """Read ``1280x720`` as width and height in pixels."""
-    match = re.fullmatch(r"(\d{2,5})x(\d{2,5})", text.strip())
-    if not match:
-        raise ValueError(f'"{text}" is no size; write width x height in pixels, like 1280x720')
-    return int(match[1]), int(match[2])
-
-
-@reading
-def count(text: str) -> int:
-    """Read a whole number of at least 1."""
-    if not text.isdecimal() or int(text) < 1:
-        raise ValueError(f'"{text}" is no count; write a whole number, 1 or more')
-    return int(text)
-
-
-@reading
-def port(text: str) -> int:
-    """Read a TCP port."""
-    if not text.isdecimal() or not 0 < int(text) < 65536:
-        raise ValueError(f'"{text}" is no port; write a number from 1 to 65535')
-    return int(text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from study.commands.options import reading
+from study.commands.values import reading
 
 
 @reading
@@ -26,10 +26,24 @@ def new_folder(text: str) -> Path:
     return path
 
 
+@reading
+def data_folder(text: str) -> Path:
+    """Read the path of a folder that commands share; one that is only read may be locked."""
+    path = Path(text)
+    _nearest_folder(path)
+    return path
+
+
 def _check_folder(path: Path) -> None:
     """Raise ValueError where files cannot be made in a folder that is there or would be made."""
+    there = _nearest_folder(path)
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise ValueError(f"{there} may not be written to; choose another place")
+
+
+def _nearest_folder(path: Path) -> Path:
+    """Return the folder, or of one yet to be made the nearest above it; a file is a ValueError."""
     there = next(place for place in (path, *path.absolute().parents) if place.exists())
     if not there.is_dir():
         raise ValueError(f"{there} is a file, no folder; choose another place")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise ValueError(f"{there} may not be written to; choose another place")
+    return there

@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import os
 
-from study.commands.options import add_study, count, reading
+from study.commands.options import add_study
 from study.commands.places import new_folder
+from study.commands.values import count, number, reading, whole_number
 
 
 @reading
@@ -66,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     _add_margins(parser)
     parser.add_argument(
         "--seed",
-        type=int,
+        type=whole_number,
         default=1,
         help="the same seed gives the same result, however many jobs (default: %(default)s)",
     )
@@ -95,7 +96,7 @@ def _add_margins(parser: argparse.ArgumentParser) -> None:
     ):
         parser.add_argument(
             f"--{name}",
-            type=float,
+            type=number,
             metavar=metavar,
             help=f"{meaning} (default: what the study declares, else {default})",
         )

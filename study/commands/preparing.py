@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
 
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
     from study.data.database import Database
     from study.data.studies import Study
     from study.settings import Settings
+
+_SQLITE: Final = "sqlite:///"
 
 
 @dataclass(frozen=True)
@@ -77,11 +80,22 @@ def open_existing(settings: Settings) -> Database:
     """
     from study.data.database import open_database
 
-    prefix = "sqlite:///"
-    if settings.database_url.startswith(prefix):
-        path = Path(settings.database_url.removeprefix(prefix))
-        if not path.is_file():
-            raise CommandError(
-                f"{path}: no such database; ocularist run makes one, --database names another"
-            )
+    path = sqlite_file(settings)
+    if path is not None and not path.is_file():
+        raise CommandError(
+            f"{path}: no such database; ocularist run makes one, --data or --database names another"
+        )
     return open_database(settings.database_url)
+
+
+def tell_if_new(settings: Settings) -> None:
+    """Say on stderr that a database will be made: whoever mistyped its place should know."""
+    path = sqlite_file(settings)
+    if path is not None and not path.is_file():
+        print(f"{path}: no such database yet; making it", file=sys.stderr)
+
+
+def sqlite_file(settings: Settings) -> Path | None:
+    """Return the file that holds the database; None for a server's."""
+    url = settings.database_url
+    return Path(url.removeprefix(_SQLITE)) if url.startswith(_SQLITE) or "://" not in url else None

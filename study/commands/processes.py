@@ -13,6 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final, Protocol
 
+from study.commands.errors import CommandError
+
 FIRST_WAIT_S: Final = 1.0
 LONGEST_WAIT_S: Final = 60.0
 STEADY_S: Final = 60.0  # a process that ran this long had a good start
@@ -69,6 +71,23 @@ class Kept:
         )
         self.process, self._due = None, now + self._wait_s
         self._wait_s = min(self._wait_s * 2, LONGEST_WAIT_S)
+
+
+def start_all(kept: Sequence[Kept], is_up: Callable[[], bool], *, poll_s: float = 0.1) -> None:
+    """Start every process and wait until the first of them is up.
+
+    Raises CommandError if that one ends before: started again, it would end in the same way.
+    """
+    first = kept[0]
+    while not is_up():
+        if first.process is not None and (status := first.process.poll()) is not None:
+            raise CommandError(
+                f"the {first.name} ended before it answered ({ending(status)}); what it said "
+                "stands above"
+            )
+        for entry in kept:
+            entry.tick()
+        time.sleep(poll_s)
 
 
 def ending(status: int) -> str:

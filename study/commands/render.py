@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 
 from study.commands.encoding import add_encoding, encoding_choices, warn_of_missed
 from study.commands.errors import CommandError
-from study.commands.options import add_study, count, settings_of, size
+from study.commands.options import add_study, settings_of
 from study.commands.pictures import check_pictures
 from study.commands.places import new_folder
+from study.commands.values import count, size
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec

@@ -39,11 +39,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Make the account."""
+    from study.commands.preparing import tell_if_new
     from study.data import researchers
     from study.data.database import open_database
 
+    settings = settings_of(options)
+    tell_if_new(settings)
     password = new_password() if options.generate else _ask(options.name)
-    db = open_database(settings_of(options).database_url)
+    db = open_database(settings.database_url)
     try:
         researcher = researchers.add(db, options.name, password)
     finally:

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-from study.commands.listening import answers, check_port, welcome
+from study.commands.listening import answers, check_certificate, check_port, welcome
 from study.commands.options import add_listening, add_places, add_study, settings_of
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def run(options: argparse.Namespace) -> int:
 
     settings = settings_of(options)
     check_port(settings)
+    check_certificate(settings)
     prepared = prepare(settings, options.study)
     password = add_first(prepared.db)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -68,10 +69,9 @@ def _start_site(
     kept: list[Kept], settings: Settings, prepared: Prepared, password: str | None
 ) -> None:
     """Start both, wait until the site answers, then print the addresses once."""
-    while not answers(settings):
-        for entry in kept:
-            entry.tick()
-        time.sleep(0.1)
+    from study.commands.processes import start_all
+
+    start_all(kept, lambda: answers(settings))
     print("\n".join(welcome(settings, prepared.study.title, password)), flush=True)
 
 

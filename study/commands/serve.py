@@ -9,7 +9,8 @@ import sys
 from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
-from study.commands.options import add_listening, add_places, add_study, count, settings_of
+from study.commands.options import add_listening, add_places, add_study, settings_of
+from study.commands.values import count
 
 if TYPE_CHECKING:
     from fastapi import FastAPI
@@ -47,13 +48,14 @@ def run(options: argparse.Namespace) -> int:
     """Serve until stopped by Ctrl-C or SIGTERM."""
     import uvicorn
 
-    from study.commands.listening import check_port, welcome
+    from study.commands.listening import check_certificate, check_port, welcome
     from study.commands.preparing import prepare
     from study.commands.researcher import add_first
 
     settings = settings_of(options)
     _check_processes(settings, options.processes)
     check_port(settings)
+    check_certificate(settings)
     prepared = prepare(settings, options.study)
     password = add_first(prepared.db)
     prepared.db.close()  # the site opens its own

@@ -12,7 +12,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 from study.commands.errors import CommandError
-from study.commands.options import add_places, add_study, count, settings_of
+from study.commands.options import add_places, add_study, settings_of
+from study.commands.values import count, whole_number
 
 if TYPE_CHECKING:
     from tqdm import tqdm
@@ -38,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--seed",
-        type=int,
+        type=whole_number,
         default=1,
         help="the same seed gives the same people and answers (default: %(default)s)",
     )

@@ -11,6 +11,7 @@ from study.commands.errors import CommandError
 from study.commands.eye_arguments import add_picture
 from study.commands.eye_options import spec_of, viewpoint_of
 from study.commands.places import new_file
+from study.commands.values import number
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
@@ -33,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_picture(parser)
     parser.add_argument(
         "--iris-px",
-        type=float,
+        type=number,
         metavar="PX",
         help="instead of --distance: one camera, as far off as makes an iris this wide on 1080 "
         "lines, at most 243",

@@ -38,11 +38,11 @@ def run(options: argparse.Namespace) -> int:
     """Render until stopped by Ctrl-C or SIGTERM."""
     from renderer.production.folder import remove_parts
     from renderer.studio import Studio
-    from study.data.database import open_database
+    from study.commands.preparing import open_existing
     from study.worker import run_worker, stopping_on_signals
 
     settings = settings_of(options)
-    db = open_database(settings.database_url)
+    db = open_existing(settings)
     studio = Studio()  # before any clip is claimed: a machine without GL says so at once
     remove_parts(settings.media_folder)  # what a killed worker left
     try:
