@@ -17,6 +17,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 INK: Final = "#222222"
 QUIET: Final = "#6b6b6b"
@@ -167,7 +168,17 @@ def beeswarm(values: Sequence[float] | np.ndarray, *, step: float) -> np.ndarray
 
 
 def figure_bytes(figure: Figure, kind: str) -> bytes:
-    """Return a figure as ``png`` or ``svg``; equal figures give equal bytes."""
+    """Return a figure as ``png`` or ``svg``; equal figures give equal bytes.
+
+    Names are anybody's, so a dollar sign in one begins no formula.
+    """
+    for text in figure.findobj(Text):
+        text.set_parse_math(False)
+    with mpl.rc_context({"text.parse_math": False}):  # labels of ticks that are made on the way
+        return _bytes(figure, kind)
+
+
+def _bytes(figure: Figure, kind: str) -> bytes:
     engine = figure.get_layout_engine()
     if engine is not None:  # lay out once for all kinds of file, without drawing for it
         if figure.axes:
