@@ -12,7 +12,7 @@ import pytest
 from study.cli import main
 from study.load.crowd import Timings
 from study.load.find import largest
-from study.load.report import Figures, figures_of, table
+from study.load.report import Figures, figures_of, kinds_table, table
 
 SQLITE = ("--people", "2", "--seconds", "1", "--database", "sqlite", "--no-fsync-cost")
 
@@ -34,6 +34,9 @@ def test_a_small_crowd_is_measured_and_nothing_it_was_told_is_lost(tmp_path: Pat
     assert (figures["errors"], figures["lost"]) == (0, 0)
     assert figures["requests_per_s"] > 0
     assert figures["p50_ms"] <= figures["p95_ms"] <= figures["p99_ms"]
+    rates = {kind["kind"]: kind["requests_per_s"] for kind in figures["kinds"]}
+    assert sum(rates.values()) == pytest.approx(figures["requests_per_s"])
+    assert min(rates["answer"], rates["clip page"]) > 0
 
 
 def test_a_pause_before_the_beginning_of_time_is_refused(
@@ -68,6 +71,11 @@ def test_only_what_ends_while_we_measure_is_counted(monkeypatch: pytest.MonkeyPa
     last = [cell.strip() for cell in table([found]).splitlines()[-1].strip("|").split("|")]
     assert last == ["x", "1", "on", "1", "0", "1", "1", "200", "290", "298", "1", "2"] + [
         *("1.50", "0.25"),
+    ]
+    rows = [[c.strip() for c in line.split("|")] for line in kinds_table([found]).splitlines()]
+    assert [row[6:11] for row in rows if row[6] in ("all", "answer")] == [
+        ["all", "1", "200", "290", "298"],
+        ["answer", "1", "200", "290", "298"],
     ]
 
 

@@ -65,7 +65,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Measure and print."""
     from study.load.postgresql import NoServerError
-    from study.load.report import machine, table
+    from study.load.report import kinds_table, machine, table
 
     if options.pause < 0:
         raise CommandError(f"--pause {options.pause:g}: a pause lasts 0 s or longer")
@@ -80,7 +80,7 @@ def run(options: argparse.Namespace) -> int:
             found += [] if options.find else [_measured(one)]
         except NoServerError as error:
             raise CommandError(str(error)) from None
-    print("\n".join([table(found), *said]))
+    print("\n".join([table(found), "", kinds_table(found), *said]))
     if options.out:
         options.out.write_text(json.dumps([figures.plain() for figures in found], indent=2) + "\n")
     # A crowd that is too large is what --find looks for; a lost answer is never right.

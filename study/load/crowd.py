@@ -7,16 +7,25 @@ import math
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
 import numpy as np
 
 from study.design.definition import StudyDefinition
 from study.load.person import Person
 from study.load.processor import processor_s
-from study.load.visit import Acknowledged
+from study.load.visit import CLIP_PAGE, Acknowledged
 from study.load.wire import Wire
 
-ANSWERS = ("answer", "questionnaire")
+ANSWERS: Final = ("answer", "questionnaire")
+KINDS: Final[Mapping[str, tuple[str, ...]]] = {
+    "answer": ("answer",),
+    "questionnaire": ("questionnaire",),
+    "play": ("play",),
+    "clip page": (CLIP_PAGE,),
+    "joining": ("page", "consent", "form"),
+}
+"""What tables call requests; joining is all before the first clip and after the last one."""
 
 
 @dataclass
