@@ -6,6 +6,7 @@ keyed hash, so that no address is stored.
 
 from __future__ import annotations
 
+import logging
 import math
 from dataclasses import dataclass
 from datetime import timedelta
@@ -13,10 +14,13 @@ from typing import Any, Final
 
 from sqlalchemy import ColumnElement, Delete, case, delete, select
 from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.exc import OperationalError
 
 from study.data.database import Database
 from study.data.refusals import TooManyError
 from study.data.schema import LimitRow
+
+log = logging.getLogger("ocularist.data")
 
 
 @dataclass(frozen=True)
@@ -53,9 +57,21 @@ def count(db: Database, limit: Limit, who: str, *, times: int = 1) -> None:
         raise TooManyError(max(1, math.ceil((since + limit.per - now).total_seconds())))
 
 
-def _forgetting(limit: Limit, is_over: ColumnElement[bool], who: str) -> Delete:
-    """Forget those whose time is over, but for rows in use: two who forget each other would wait
-    for each other, and PostgreSQL would break off one of them.
+def forget(db: Database) -> None:
+    """Forget everybody whose time is over: counting does so, too, but only when somebody comes."""
+    now = db.now()
+    try:
+        with db.writing() as session:
+            for limit in (JOINING, REPORTING):
+                session.execute(_forgetting(limit, LimitRow.since <= now - limit.per))
+    except OperationalError as error:  # the database is away: the next time will do
+        log.warning("limits could not be forgotten yet (%s)", error)
+
+
+def _forgetting(limit: Limit, is_over: ColumnElement[bool], who: str = "") -> Delete:
+    """Forget those whose time is over, other than ``who``, but for rows in use.
+
+    Two who forget each other would wait for each other, and PostgreSQL would break off one of them.
     """
     old = select(LimitRow.who).where(LimitRow.kind == limit.kind, is_over, LimitRow.who != who)
     return delete(LimitRow).where(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Final
@@ -36,6 +37,7 @@ from study.site import (
 )
 from study.site.errors import handle_errors
 from study.site.express import Express
+from study.site.forgetting import forget_regularly
 from study.site.headers import SecureHeaders
 from study.site.language import RememberLanguage
 from study.site.media import ClipShelf
@@ -87,7 +89,10 @@ def create_app(settings: Settings, *, study_id: int | None = None) -> FastAPI:
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         to_thread.current_default_thread_limiter().total_tokens = THREADS
+        forgetting = asyncio.create_task(forget_regularly(place.db))
         yield
+        forgetting.cancel()
+        await asyncio.wait([forgetting])
         place.writer.close()
         place.db.close()
 
