@@ -1,4 +1,4 @@
-"""The tables. Everything else in this package reads and writes through these classes.
+"""Studies, the people who take part, what they were shown and what they did.
 
 Events are the truth about answers and plays: rows are added, never changed. The stamps on a
 participant and a trial are written in the same transaction as the event that they follow from.
@@ -7,39 +7,12 @@ participant and a trial are written in the same transaction as the event that th
 from __future__ import annotations
 
 from datetime import date, datetime
-from typing import Any, ClassVar
+from typing import Any
 
-from sqlalchemy import (
-    JSON,
-    BigInteger,
-    ForeignKey,
-    Index,
-    LargeBinary,
-    MetaData,
-    String,
-    Text,
-    UniqueConstraint,
-)
-from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+from sqlalchemy import JSON, BigInteger, ForeignKey, Index, String, Text, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
 
-from study.data.moments import UtcDateTime
-
-
-class Base(DeclarativeBase):
-    """What all tables share."""
-
-    metadata = MetaData(
-        naming_convention={  # fixed names, so that a later migration can change what it finds
-            "ix": "ix_%(table_name)s_%(column_0_name)s",
-            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
-            "fk": "fk_%(table_name)s_%(column_0_name)s",
-            "pk": "pk_%(table_name)s",
-        }
-    )
-    type_annotation_map: ClassVar[dict[Any, Any]] = {
-        datetime: UtcDateTime(),
-        dict[str, Any]: JSON(),
-    }
+from study.data.schema.base import Base
 
 
 class StudyRow(Base):
@@ -170,105 +143,8 @@ class EventRow(Base):
     created_at: Mapped[datetime]
 
 
-class JobRow(Base):
-    """One clip to render; ``priority`` counts up in the order in which clips are needed."""
-
-    __tablename__ = "jobs"
-    __table_args__ = (Index("ix_jobs_state_priority", "state", "priority"),)
-    id: Mapped[int] = mapped_column(primary_key=True)
-    clip_id: Mapped[str] = mapped_column(String(64), unique=True)
-    spec: Mapped[dict[str, Any]]
-    size: Mapped[str] = mapped_column(String(20))
-    orbit_direction: Mapped[str] = mapped_column(String(20))
-    state: Mapped[str] = mapped_column(String(20))
-    priority: Mapped[int]
-    attempts: Mapped[int]
-    progress: Mapped[float]
-    claimed_by: Mapped[str | None] = mapped_column(String(200))
-    lease_until: Mapped[datetime | None]
-    error: Mapped[str | None] = mapped_column(Text)
-    record: Mapped[dict[str, Any] | None]
-    created_at: Mapped[datetime]
-    started_at: Mapped[datetime | None]
-    finished_at: Mapped[datetime | None]
-
-
-class ResearcherRow(Base):
-    """An account of the dashboard."""
-
-    __tablename__ = "researchers"
-    id: Mapped[int] = mapped_column(primary_key=True)
-    name: Mapped[str] = mapped_column(String(100), unique=True)
-    password_hash: Mapped[str] = mapped_column(String(200))
-    created_at: Mapped[datetime]
-
-
-class ResearcherLogRow(Base):
-    """What a researcher did that others must be able to see later: showing results, exporting."""
-
-    __tablename__ = "researcher_log"
-    id: Mapped[int] = mapped_column(primary_key=True)
-    researcher_id: Mapped[int] = mapped_column(ForeignKey("researchers.id"))
-    study_id: Mapped[int | None] = mapped_column(ForeignKey("studies.id"))
-    kind: Mapped[str] = mapped_column(String(30))
-    payload: Mapped[dict[str, Any]]
-    created_at: Mapped[datetime]
-
-
-class SignInAttemptRow(Base):
-    """A failed sign-in; enough of them make the next one wait."""
-
-    __tablename__ = "sign_in_attempts"
-    __table_args__ = (Index("ix_sign_in_attempts_at", "created_at"),)
-    id: Mapped[int] = mapped_column(primary_key=True)
-    name: Mapped[str] = mapped_column(String(100), index=True)
-    address: Mapped[str] = mapped_column(String(100), index=True)
-    created_at: Mapped[datetime]
-
-
 class ErasureRow(Base):
     """Somebody who withdraws at this moment: while it stands, their events may be deleted."""
 
     __tablename__ = "erasures"
     participant_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
-
-
-class LimitRow(Base):
-    """How often somebody did something ``since`` a moment; ``who`` is a keyed hash."""
-
-    __tablename__ = "limits"
-    kind: Mapped[str] = mapped_column(String(20), primary_key=True)
-    who: Mapped[str] = mapped_column(String(64), primary_key=True)
-    since: Mapped[datetime]
-    count: Mapped[int]
-
-
-class FigureSetRow(Base):
-    """The figures of one study's answers, people's or simulated ones, as of one moment.
-
-    ``seen`` says which answers they were drawn from; ``summary`` is what stands beside them.
-    """
-
-    __tablename__ = "figure_sets"
-    __table_args__ = (UniqueConstraint("study_id", "kind"),)
-    id: Mapped[int] = mapped_column(primary_key=True)
-    study_id: Mapped[int] = mapped_column(ForeignKey("studies.id"))
-    kind: Mapped[str] = mapped_column(String(20))
-    as_of: Mapped[datetime | None]
-    seen: Mapped[str | None] = mapped_column(String(100))
-    took_s: Mapped[float | None]
-    summary: Mapped[dict[str, Any] | None] = mapped_column(JSON(none_as_null=True))
-    claimed_by: Mapped[str | None] = mapped_column(String(200))
-    lease_until: Mapped[datetime | None]
-    started_at: Mapped[datetime | None]
-    error: Mapped[str | None] = mapped_column(Text)
-    failed_at: Mapped[datetime | None]
-
-
-class FigureFileRow(Base):
-    """One file of a set of figures, compressed by zlib."""
-
-    __tablename__ = "figure_files"
-    set_id: Mapped[int] = mapped_column(ForeignKey("figure_sets.id"), primary_key=True)
-    name: Mapped[str] = mapped_column(String(100), primary_key=True)
-    content: Mapped[bytes] = mapped_column(LargeBinary)
