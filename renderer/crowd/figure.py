@@ -113,7 +113,7 @@ def _thin(shape: Floats, piece: Piece) -> tuple[Indices, Floats, Floats, Floats,
     rows, positions, normals = used[kept], positions[kept], normals[kept]
     if piece.turned_in_above_mm is not None:
         is_hem = base_mesh().vertices_mm[rows, 1] > piece.turned_in_above_mm
-        again, places, facing, more = hem(positions, normals, whole, is_hem=is_hem)
+        again, places, facing, more = hem(positions, whole, is_hem=is_hem)
         rows = np.concatenate([rows, rows[again]])
         positions, normals = np.concatenate([positions, places]), np.concatenate([normals, facing])
         whole = np.concatenate([whole, more])

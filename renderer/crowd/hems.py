@@ -27,9 +27,9 @@ def open_edges(triangles: Indices) -> Indices:
 
 
 def hem(
-    positions_mm: Floats, normals: Floats, triangles: Indices, *, is_hem: npt.NDArray[np.bool_]
+    positions_mm: Floats, triangles: Indices, *, is_hem: npt.NDArray[np.bool_]
 ) -> tuple[Indices, Floats, Floats, Indices]:
-    """Return what turns open edges in where both ends are ``is_hem`` (n,).
+    """Return what turns open edges in, to their middle, where both ends are ``is_hem`` (n,).
 
     Rows (k,) of the vertices that it repeats, their positions and normals, and triangles over all
     vertices, the k new ones counted on from n.
@@ -37,7 +37,8 @@ def hem(
     edges = open_edges(triangles)
     edges = edges[is_hem[edges].all(axis=1)]
     rows, ends = np.unique(edges, return_inverse=True)
-    inwards = -normals[rows]
+    # Not against the normals: where a rim is jagged they point anywhere.
+    inwards = unit((positions_mm[rows].mean(axis=0) - positions_mm[rows]) * [1.0, 0.0, 1.0])
     down = np.array([0.0, -TURNED_DOWN_MM, 0.0])
     inner = positions_mm[rows] + TURNED_IN_MM * inwards + down
     facing = unit(inwards + np.array([0.0, 1.5, 0.0]))
