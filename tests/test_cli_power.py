@@ -29,16 +29,20 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 def test_power_of_the_recommended_study(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     own = ["--participants", "12,6", "--replicates", "3", "--jobs", "1", "--out", str(tmp_path)]
     assert main(["power", "lod", *own, "--noticed-margin", "0.3"]) == 0
-    lines = capsys.readouterr().out.splitlines()
+    told = capsys.readouterr()
+    assert told.err.splitlines()[-1] == "Simulating: 3 of 3 studies"  # without a terminal
+    lines = told.out.splitlines()
+    assert "More people can be tried: --participants 24,48" in lines
     assert lines[0].startswith("lod: 3 simulated studies of each number of people")
     head = next(line for line in lines if line.startswith("distance"))
     assert head.split()[-4:] == ["6", "people", "12", "people"]
     assert sum(line.startswith("macroscopic") for line in lines) >= 4
     assert any(line.startswith("SIMULATED people, 3 studies; brackets hold") for line in lines)
-    told = json.loads((tmp_path / "power.json").read_text(encoding="utf-8"))
-    assert told["participants"] == [6, 12]
-    assert (told["study"], told["truth"], told["noticed_margin"]) == ("lod", "thesis", 0.3)
-    assert told["margins"] == "noticed margin set at analysis"
+    written = json.loads((tmp_path / "power.json").read_text(encoding="utf-8"))
+    assert written["participants"] == [6, 12]
+    assert (written["study"], written["truth"]) == ("lod", "thesis")
+    assert written["noticed_margin"] == 0.3
+    assert written["margins"] == "noticed margin set at analysis"
 
 
 def test_the_thesiss_design_cannot_conclude_equivalence(
@@ -47,6 +51,7 @@ def test_the_thesiss_design_cannot_conclude_equivalence(
     own = ["--participants", "10", "--replicates", "2", "--jobs", "1", "--out", str(tmp_path)]
     assert main(["power", "thesis", *own]) == 0
     text = " ".join(capsys.readouterr().out.split())
+    assert "More people can be tried" not in text  # which would not help
     assert "Cannot be concluded, however many take part: equivalence of low at macroscopic" in text
     assert "high at near, low at medium, medium at medium, high at medium, ultra at medium" in text
     assert "macroscopic, near and far: no LoD can be named as the cheapest" in text

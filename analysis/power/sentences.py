@@ -9,7 +9,8 @@ import pandas as pd
 from analysis.power.needed import POWER, Needed, needed_people
 from analysis.power.outcome import Outcome
 from analysis.power.replicates import Scene
-from analysis.power.text_table import Row, as_records, by_people
+from analysis.power.text_table import Row, by_people
+from analysis.tables.records import records
 from analysis.words.wording import listed, percent
 
 
@@ -46,6 +47,14 @@ def answer_lines(outcome: Outcome) -> list[str]:
         found.append(f"{where}: no LoD can be named as the cheapest that is enough: {reason}.")
     single = _one_by_one(outcome.verdicts, outcome.ranked)
     return [*found, *single, *_cannot(outcome.verdicts)]
+
+
+def takes_more(outcome: Outcome) -> bool:
+    """Say whether some LoD that could be named takes more people than were simulated."""
+    rows = outcome.cheapest[outcome.cheapest["right"].notna()]
+    rows = rows[rows["right_lod"] != rows["best"]]
+    every = [needed_for(own, "right") for _, own in rows.groupby("distance", sort=False)]
+    return any(needed.people is None for needed in every)
 
 
 def needed_for(rows: pd.DataFrame, name: str) -> Needed:
@@ -127,11 +136,11 @@ def _cannot(verdicts: pd.DataFrame) -> Iterator[str]:
     """Yield what more people do not help: first what nobody sees, then what is not comparable."""
     rows = verdicts[verdicts["cannot_conclude"] != ""].drop_duplicates(["distance", "lod"])
     is_unseen = rows["true_loss"].isna()
-    unseen = [f"{row['lod']} at {row['distance']}" for row in as_records(rows[is_unseen])]
+    unseen = [f"{row['lod']} at {row['distance']}" for row in records(rows[is_unseen])]
     if unseen:
         yield f"Nothing can be concluded of {listed(unseen)}, which nobody sees."
     found: dict[tuple[str, bool], list[str]] = {}
-    for row in as_records(rows[~is_unseen]):
+    for row in records(rows[~is_unseen]):
         place = f"{row['lod']} at {row['distance']}"
         is_whole = bool(pd.isna(row["different"]))
         found.setdefault((str(row["cannot_conclude"]), is_whole), []).append(place)

@@ -7,13 +7,13 @@ import multiprocessing
 import os
 import sys
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from study.commands.power_options import add_arguments
+from study.commands.power_options import MOST_PEOPLE, add_arguments
 
 if TYPE_CHECKING:
     from tqdm import tqdm
@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of each job: small matrices, many jobs
     from analysis.power.outcome import outcome_of
     from analysis.power.replicates import Scene
-    from analysis.power.sentences import answer_lines, opening_lines
+    from analysis.power.sentences import answer_lines, opening_lines, takes_more
     from analysis.power.text_table import table_lines
     from analysis.power.writing import write_power
     from study.design.definition import read_definition
@@ -67,6 +67,9 @@ def run(options: argparse.Namespace) -> int:
     _print_wrapped(opening_lines(scene, outcome, definition.key))
     print("\n".join(["", *table_lines(outcome), ""]))
     _print_wrapped(answer_lines(outcome))
+    if takes_more(outcome) and 4 * scene.people[-1] <= MOST_PEOPLE:
+        most = scene.people[-1]
+        print(f"More people can be tried: --participants {2 * most},{4 * most}")
     print(
         f"SIMULATED people, {options.replicates} studies; brackets hold the simulation's own error "
         "at 95 %."
@@ -102,21 +105,36 @@ def _truth(name: str, plan: Plan, margins: Margins) -> Assumed:
 
 
 def _simulate(scene: Scene, options: argparse.Namespace) -> list[Studied]:
-    from tqdm import tqdm
-
     from analysis.power.replicates import simulate_studies
 
-    bar: tqdm[Any] = tqdm(
-        total=options.replicates, unit="study", leave=False, disable=not sys.stderr.isatty()
-    )
-    with bar, _executor(min(options.jobs, options.replicates)) as executor:
+    jobs = min(options.jobs, options.replicates)
+    with _told(options.replicates) as told, _executor(jobs) as executor:
         return simulate_studies(
             scene,
             replicates=options.replicates,
             seed=options.seed,
             executor=executor,
-            progress=lambda done: _advance(bar, done),
+            progress=told,
         )
+
+
+@contextmanager
+def _told(total: int) -> Iterator[Callable[[int], None]]:
+    """Give what is told how many studies more are done: a bar, or without a terminal four lines."""
+    from tqdm import tqdm
+
+    bar: tqdm[Any] = tqdm(total=total, unit="study", leave=False, disable=not sys.stderr.isatty())
+    done = 0
+
+    def advance(more: int) -> None:
+        nonlocal done
+        bar.update(more)
+        quarter, done = 4 * done // total, done + more
+        if bar.disable and 4 * done // total > quarter:
+            print(f"Simulating: {done} of {total} studies", file=sys.stderr, flush=True)
+
+    with bar:
+        yield advance
 
 
 @contextmanager
@@ -150,7 +168,3 @@ def _settings(
         "dropout": scene.dropout,
         "seed": options.seed,
     }
-
-
-def _advance(bar: tqdm[Any], done: int) -> None:
-    bar.update(done)

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import argparse
 import os
+from typing import Final
 
 from study.commands.options import add_study
 from study.commands.places import new_folder
 from study.commands.values import count, number, reading, whole_number
+
+MOST_PEOPLE: Final = 5000
 
 
 @reading
 def people(text: str) -> tuple[int, ...]:
     """Read ``10,20,40``: numbers of participants, at least 2 each."""
     words = [word.strip() for word in text.split(",")]
-    if not all(word.isdecimal() and 2 <= int(word) <= 5000 for word in words):
-        raise ValueError(f'"{text}": write whole numbers from 2 to 5000, like 10,20,40')
+    if not all(word.isdecimal() and 2 <= int(word) <= MOST_PEOPLE for word in words):
+        raise ValueError(f'"{text}": write whole numbers from 2 to {MOST_PEOPLE}, like 10,20,40')
     return tuple(sorted({int(word) for word in words}))
 
 
