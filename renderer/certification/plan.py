@@ -7,6 +7,7 @@ from itertools import product
 from typing import Final
 
 from renderer.certification.environments import ENVIRONMENTS
+from renderer.detail import Detail
 
 AZIMUTHS_DEG: Final = (0.0, 30.0, 50.0)
 Iris = tuple[int, str]  # seed and colour
@@ -17,7 +18,7 @@ PICTURE_RMS_PERCENT: Final = 3.0  # per channel in the iris, without the referen
 PICTURE_NOISE_PERCENT: Final = 3.0  # with more noise nobody can tell
 FURNACE_PERCENT: Final = 1.0
 INSIDE_PERCENT: Final = 1.0
-LAYERS_NODES: Final = 12  # of the level ultra
+LAYERS_NODES: Final = int(Detail.uniform("ultra").setting("subsurface", "nodes"))
 LAYERS_RIVAL: Final = 200  # samples of the thesis's sum
 
 

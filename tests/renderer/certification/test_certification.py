@@ -12,7 +12,7 @@ import pytest
 
 from renderer.certification import twin
 from renderer.certification.certificate import Certificate, certify, picture_result, twin_of
-from renderer.certification.plan import Case, Plan
+from renderer.certification.plan import LAYERS_NODES, Case, Plan
 from renderer.certification.report import write_report
 from renderer.certification.tracer import SAFE_VARIANT, path_tracer
 from renderer.eye import maps, model
@@ -120,7 +120,7 @@ def test_skylight_inside_the_chamber_agrees(certificate: Certificate) -> None:
 
 def test_few_nodes_beat_the_thesiss_200_samples(certificate: Certificate) -> None:
     error = {found.integrator: found for found in certificate.layers}
-    assert error["pieces 12"].rms_percent < 0.3 * error["left sum 200"].rms_percent
+    assert error[f"pieces {LAYERS_NODES}"].rms_percent < 0.3 * error["left sum 200"].rms_percent
     assert error["left sum 10"].bias_percent > 10.0
     assert error["pieces 6"].fetches < 10
 

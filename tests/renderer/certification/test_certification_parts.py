@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 
 from renderer.certification import tracer
-from renderer.certification.aims import Aim
+from renderer.certification.aims import Aim, aims_of
 from renderer.certification.environments import ENVIRONMENTS
-from renderer.certification.metrics import displayed, flip_map, rms_scores, ssim_map
+from renderer.certification.layers import NODES
+from renderer.certification.metrics import RegionScore, displayed, flip_map, rms_scores, ssim_map
 from renderer.certification.panels import profile, pupil_centre
 from renderer.certification.plan import full_plan, quick_plan
 from renderer.certification.view import HALF_MM, View, front_hit, regions
+from renderer.detail import Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.optics import surface_height
 
@@ -103,6 +105,25 @@ def test_an_aim_is_missed_above_its_limit_and_without_a_number() -> None:
     assert aim.line() == "MISSED RMS: 3.20 % (blue-1-constant-0), wanted at most 3.00 %"
     assert Aim("RMS", 3.0, 3.0, "x").line().startswith("met    RMS: 3.00 %")
     assert not Aim("RMS", 3.0, math.nan, "x").is_met
+
+
+def test_layers_are_judged_by_as_many_nodes_as_ultra_marches() -> None:
+    marched = Detail.uniform("ultra").setting("subsurface", "nodes")
+    assert marched in NODES
+    none = [0.0, 0.0, 0.0]
+    errors = {f"pieces {nodes}": 50.0 for nodes in NODES}
+    errors |= {f"pieces {marched}": 0.1, "left sum 200": 6.0}
+    *_, layers = aims_of(
+        iris={"x": RegionScore(1, none, none, none, none, 0.0, 0.0, 1.0)},
+        furnace_percent=none,
+        suns={"x": 0.0},
+        skies={"x": 0.0},
+        layers=errors,
+    )
+    assert layers.line() == (
+        f"met    layers: RMS of pieces {marched} beside the left sum 200: 0.10 % "
+        f"(pieces {marched}), wanted at most 6.00 %"
+    )
 
 
 def test_the_full_plan_covers_two_irises_three_skies_and_three_views() -> None:
