@@ -21,7 +21,8 @@ from study.data.figures_due import SIMULATED
 from study.data.studies import Study
 
 BEAT_S: Final = 20.0
-KEPT: Final = (".svg", ".csv", ".html")  # a picture in pixels can be had from the report's command
+# A picture in pixels can be had from the report's command.
+KEPT: Final = (".svg", ".csv", ".html", ".json")
 Say = Callable[[str], None]
 
 

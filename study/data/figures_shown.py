@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
+from sqlalchemy import select
+
 from study.data.database import Database
 from study.data.figures_due import find_set, is_claimed, newest
 from study.data.schema import FigureFileRow
@@ -53,3 +55,10 @@ def content(db: Database, set_id: int, name: str) -> bytes | None:
     with db.reading() as session:
         row = session.get(FigureFileRow, (set_id, name))
         return None if row is None else zlib.decompress(row.content)
+
+
+def names(db: Database, set_id: int) -> tuple[str, ...]:
+    """Return the names of a set's files."""
+    wanted = select(FigureFileRow.name).where(FigureFileRow.set_id == set_id)
+    with db.reading() as session:
+        return tuple(session.scalars(wanted.order_by(FigureFileRow.name)))

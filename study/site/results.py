@@ -29,7 +29,14 @@ TYPES: Final = {
     "svg": ("image/svg+xml", "inline"),
     "csv": ("text/csv; charset=utf-8", "attachment"),
     "html": ("text/html; charset=utf-8", "attachment"),
+    "json": ("application/json", "attachment"),
 }
+
+TO_LOAD: Final = {
+    "decision.csv": "each verdict, one row per distance and LoD",
+    "lod_policy.json": "up to which size of the iris each LoD is enough",
+}
+"""What a program or an engine loads of the answer, and what it holds."""
 
 
 @router.get("/researcher/results")
@@ -48,7 +55,9 @@ def results(here: Here, researcher: ResearcherHere, data: str = KINDS[0]) -> Res
         return here.page("researcher/results_hidden.html", **common, fault="")
     kind = data if data in KINDS else KINDS[0]
     found = figures_shown.latest(here.db, study.id, kind)
-    return here.page("researcher/results.html", **common, kind=kind, found=found)
+    there = () if found.id is None else figures_shown.names(here.db, found.id)
+    to_load = {name: words for name, words in TO_LOAD.items() if name in there}
+    return here.page("researcher/results.html", **common, kind=kind, found=found, to_load=to_load)
 
 
 def _sees(here: Place, researcher: SignedIn, study: Study) -> bool:

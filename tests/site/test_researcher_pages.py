@@ -217,6 +217,11 @@ def test_the_figures_are_the_reports_own_and_stamped(site: Any, ada: Any) -> Non
     assert names[0] == "decision-chart"
     report = ada.client.get("/researcher/results/simulated/report.html")
     assert report.headers["content-disposition"].startswith("attachment; filename=")
+    for name in ("decision.csv", "lod_policy.json"):  # for an engine to load
+        assert f'<a href="/researcher/results/simulated/{name}" download>' in page
+    policy = ada.client.get("/researcher/results/simulated/lod_policy.json")
+    assert policy.headers["content-type"] == "application/json"
+    assert policy.json()["provenance"]["simulated"] is True
     for name in names:
         base = f"/researcher/results/simulated/{name}"
         image = base64.b64encode(ada.client.get(f"{base}.svg").content).decode()
