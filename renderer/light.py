@@ -8,6 +8,7 @@ Lambertian surface facing the sun leaves with a radiance of about 1.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import moderngl
@@ -36,6 +37,11 @@ class Sky:
     ambient_sh: Vector
     faces: Vector | None = None
 
+    @cached_property
+    def ambient(self) -> dict[str, Any]:
+        """What ``light.glsl`` reads of ``ambient_sh``."""
+        return ambient_uniforms(self.ambient_sh)
+
     def radiance(self, directions: Vector) -> Vector:
         """Return the surroundings' radiance without the sun towards unit directions (n, 3)."""
         if self.faces is not None:
@@ -56,7 +62,7 @@ class Light:
         return {
             "u_sun_direction": self.sky.sun_direction,
             "u_sun_irradiance": self.sky.sun_irradiance,
-            **ambient_uniforms(self.sky.ambient_sh),
+            **self.sky.ambient,
             "u_sun_shadow": self.shadow_map,
             "u_world_to_shadow": self.world_to_shadow,
         }

@@ -7,6 +7,7 @@ misspelt constant fails to compile and names itself, dead code still disappears.
 from __future__ import annotations
 
 import re
+import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,6 +24,8 @@ VERSION_LINE: Final = "#version 430 core\n"
 _INCLUDE: Final = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
 _UNIFORM: Final = re.compile(r"^\s*uniform\s+(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*;", re.MULTILINE)
 _ERROR_PLACE: Final = re.compile(r"\b(\d+):(\d+)\((\d+)\)|\b(\d+)\((\d+)\)")
+
+_FLOAT: Final = struct.Struct("f")
 
 Constants = Mapping[str, int | float]
 
@@ -87,11 +90,19 @@ def _expand(name: str, files: list[str], *, included_from: str, swapped: Mapping
 
 @dataclass
 class Program:
-    """A linked program whose uniforms are set by name and checked against its sources."""
+    """A linked program whose uniforms are set by name and checked against its sources.
+
+    A frame sets thousands of them, most to what they were: ``set`` writes those that change.
+    """
 
     gl_program: moderngl.Program
     declared: dict[str, str]
     units: dict[str, int] = field(default_factory=dict)
+    _active: frozenset[str] = field(init=False, repr=False)
+    _written: dict[str, bytes] = field(init=False, repr=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._active = frozenset(self.gl_program)  # asking GL's program walks through all its names
 
     def set(self, **values: Any) -> None:
         """Set uniforms and bind textures; a name that no source declares raises KeyError.
@@ -102,16 +113,19 @@ class Program:
         for name, value in values.items():
             if name not in self.declared:
                 raise KeyError(f"{name}: no shader of this program declares such a uniform")
-            if name not in self.gl_program:
+            if name not in self._active:
                 continue
-            if self.declared[name].startswith(("sampler", "isampler", "usampler")):
+            if name in self.units:
                 value.use(location=self.units[name])
-            else:
-                plain_uniform(self.gl_program, name).write(_pack(value, self.declared[name]))
+                continue
+            data = _pack(value, self.declared[name])
+            if data != self._written.get(name):
+                plain_uniform(self.gl_program, name).write(data)
+                self._written[name] = data
 
     def is_active(self, name: str) -> bool:
         """Whether the linked program still reads this uniform."""
-        return name in self.gl_program
+        return name in self._active
 
 
 def plain_uniform(gl_program: moderngl.Program, name: str) -> moderngl.Uniform:
@@ -123,6 +137,8 @@ def plain_uniform(gl_program: moderngl.Program, name: str) -> moderngl.Uniform:
 
 
 def _pack(value: Any, kind: str) -> bytes:
+    if kind == "float":
+        return _FLOAT.pack(value)
     if kind in {"int", "bool", "ivec2", "ivec3", "ivec4"}:
         return np.ascontiguousarray(value, dtype=np.int32).tobytes()
     array = np.asarray(value, dtype=np.float32)

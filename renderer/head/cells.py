@@ -38,18 +38,20 @@ class Cells:
             slack = self.spread + self.radius_mm / np.maximum(distance, self.radius_mm)
             inside &= (to_camera * self.facing).sum(axis=1) > -slack * distance
         runs: list[tuple[int, int]] = []
-        for first, count in zip(self.first[inside], self.count[inside], strict=True):
+        for first, count in zip(
+            self.first[inside].tolist(), self.count[inside].tolist(), strict=True
+        ):
             if runs and sum(runs[-1]) == first:
-                runs[-1] = (runs[-1][0], runs[-1][1] + int(count))
+                runs[-1] = (runs[-1][0], runs[-1][1] + count)
             else:
-                runs.append((int(first), int(count)))
+                runs.append((first, count))
         return runs
 
 
 def frustum_distance(clip: Floats, points_mm: Floats) -> Floats:
     """Return signed distances (n, 6) in mm of points from a frustum's planes, positive inside."""
     planes = np.concatenate([clip[3] + clip[:3], clip[3] - clip[:3]]).reshape(6, 4)
-    planes = planes / np.linalg.norm(planes[:, :3], axis=1, keepdims=True)
+    planes /= np.sqrt((planes[:, :3] ** 2).sum(axis=1, keepdims=True))
     return np.asarray(points_mm @ planes[:, :3].T + planes[:, 3])
 
 
