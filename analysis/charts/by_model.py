@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 
 from analysis.charts.by_model_table import by_model_table
 from analysis.charts.material import Material
-from analysis.charts.parts import apart, distance_label, readable_on, records, wrapped
+from analysis.charts.parts import apart, distance_label, readable_on, wrapped
 from analysis.charts.scales import NO_MODEL
 from analysis.charts.style import (
     INK,
@@ -29,6 +29,7 @@ from analysis.charts.style import (
 )
 from analysis.charts.trends import NO_ORDER, tau_sentence
 from analysis.correlation import rank_correlations
+from analysis.tables.records import records
 from analysis.words.wording import number
 
 BY_MODEL: Final = "Perceived against actual LoD, by the model"

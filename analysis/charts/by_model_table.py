@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 
 from analysis.charts.material import Material
-from analysis.charts.parts import records
 from analysis.descriptive.means import rating_counts
 from analysis.estimates.realism import Realism
 from analysis.tables.ordering import lod_ranks
+from analysis.tables.records import records
 
 _CENTRAL: Final = (0.025, 0.975)
 

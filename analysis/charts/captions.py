@@ -136,8 +136,11 @@ CAPTIONS: Final = {
         "pairing of LoDs, left and right."
     ),
     "observers": (
-        "Everyone's leniency and inconsistency (ITU-T P.910 Annex E); n counts people. "
-        "Flagged and inconsistent people weigh less in the models; nobody was excluded."
+        "Above: everyone's leniency and inconsistency by their own ratings (ITU-T P.910 Annex E); "
+        "n counts people. Who is flagged, inconsistent, or answers as if without looking weighs "
+        "less in the models; nobody was excluded. Below: leniency, and with 30 ratings per person "
+        "or more inconsistency and style, by the model of ratings, with 95 % intervals. These "
+        "estimates are shrunken: the less a person answered, the nearer they lie to the population."
     ),
     "ratings-per-person": (
         "What each person gave: a row per person, severe ones on top, a column per eye as it was "
@@ -148,7 +151,8 @@ CAPTIONS: Final = {
         "Every verdict with everyone, with and without flagged people, and without each single "
         "person; of those without a flag only who moves a verdict has a row. A frame marks a "
         "verdict that differs from the first row's. The last row says without how many of all "
-        "people, left out one at a time, the verdict stays."
+        "people, left out one at a time, the verdict stays. Verdicts on LoDs without a rank, such "
+        "as single effects left out, are tried without each single person alone."
     ),
     "session-course": (
         "How ratings drift and how long answers take while a session lasts. Left: rating "

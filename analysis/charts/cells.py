@@ -9,13 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from analysis.charts.parts import (
-    distance_label,
-    grouped_places,
-    head_groups,
-    readable_on,
-    records,
-)
+from analysis.charts.parts import distance_label, grouped_places, head_groups, readable_on
 from analysis.charts.style import (
     INK,
     NO_RATINGS,
@@ -31,6 +25,7 @@ from analysis.charts.style import (
 from analysis.descriptive.means import mean_ratings, rating_counts
 from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.reading import Tables
+from analysis.tables.records import records
 from analysis.words.wording import interval, number
 
 DISTRIBUTION: Final = "Distribution of the ratings"

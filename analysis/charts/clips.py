@@ -14,14 +14,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
-from analysis.charts.parts import (
-    clip_label,
-    distance_label,
-    draw_mean,
-    lod_legend,
-    records,
-    upright_in,
-)
+from analysis.charts.parts import clip_label, distance_label, draw_mean, lod_legend, upright_in
 from analysis.charts.style import (
     INK,
     NO_RATINGS,
@@ -40,6 +33,7 @@ from analysis.descriptive.means import mean_ratings, person_means
 from analysis.descriptive.shares import PAIRED, clips_or_pairings
 from analysis.tables.ordering import lod_order
 from analysis.tables.reading import Tables
+from analysis.tables.records import records
 
 TITLE: Final = "Perceived realism of each eye, per clip"
 _CLIPS_PER_ROW: Final = 10

@@ -9,7 +9,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from analysis.charts.material import Material
-from analysis.charts.parts import records
 from analysis.charts.style import (
     INK,
     PAGE_WIDTH_IN,
@@ -20,6 +19,7 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.descriptive.means import answered, t_interval
+from analysis.tables.records import records
 from analysis.words.wording import people
 
 COURSE: Final = "Over the session"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator
 
 from analysis.charts.material import Material
-from analysis.charts.parts import apart, records
+from analysis.charts.parts import apart
 from analysis.charts.style import (
     ALARM,
     INK,
@@ -37,6 +37,7 @@ from analysis.curves.curve import (
 )
 from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.reading import Tables
+from analysis.tables.records import records
 from analysis.words.wording import people, percent
 
 _PANEL_IN: Final = 2.7

@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 
 from analysis.charts.forest import NO_VERDICT
 from analysis.charts.material import Material
-from analysis.charts.parts import distance_label, readable_on, records, wrapped
+from analysis.charts.parts import distance_label, readable_on, wrapped
 from analysis.charts.stability import stability_sentence
 from analysis.charts.style import (
     INK,
@@ -30,6 +30,7 @@ from analysis.charts.style import (
 )
 from analysis.decision.verdicts import NOT_SHOWN
 from analysis.tables.ordering import distance_order, lod_order
+from analysis.tables.records import records
 from analysis.words.wording import milliseconds, percent
 
 TITLE: Final = "Which LoD is enough, and how sure that is"

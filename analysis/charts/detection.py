@@ -9,9 +9,9 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from analysis.charts.material import Material
-from analysis.charts.parts import records
 from analysis.charts.rows import draw_span, row_chart, span_of
 from analysis.charts.style import ALARM, INK, SMALL, message_figure
+from analysis.tables.records import records
 from analysis.words.wording import percent
 
 DETECTION: Final = "How well differences are detected"

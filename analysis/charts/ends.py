@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from analysis.charts.material import Material
-from analysis.charts.parts import distance_label, grouped_places, records
+from analysis.charts.parts import distance_label, grouped_places
 from analysis.charts.scales import NO_MODEL
 from analysis.charts.style import (
     INK,
@@ -24,12 +24,13 @@ from analysis.charts.style import (
     tidy,
 )
 from analysis.diagnostics.predicted import HIGHEST, LOWEST
+from analysis.tables.records import records
 from analysis.words.wording import number, people
 
 ENDS: Final = "Are the ends of the scale used as the model expects?"
 _MOST_PEOPLE: Final = 200
 _ROW_IN: Final = 0.24
-_PEOPLE_IN: Final = 2.3
+_PEOPLE_IN: Final = 2.1
 _GIVEN: Final = {True: ("#0072B2", "o"), False: ("#D55E00", "D")}
 
 
@@ -48,7 +49,7 @@ def ends_chart(material: Material) -> Figure:
     names = cells[cells["end"] == HIGHEST]
     distances = [str(distance) for distance in names["distance"]]
     places = grouped_places(distances)
-    cells_in = 0.35 + min(_ROW_IN, 5.2 / places[-1]) * (places[-1] + 1)
+    cells_in = 0.35 + min(_ROW_IN, 5.8 / places[-1]) * (places[-1] + 1)
     figure = new_figure(
         PAGE_WIDTH_IN, 1.0 + cells_in + _PEOPLE_IN, ENDS, is_simulated=material.is_simulated
     )
@@ -59,6 +60,8 @@ def ends_chart(material: Material) -> Figure:
         _draw_cells(axes, places, cells[cells["end"] == end])
         axes.set_title(f"share of ratings that are {rating}", fontsize=NORMAL, color=INK)
         _draw_people(below, own[own["end"] == end], rating)
+    most = float(own[["share", "high"]].to_numpy(dtype=float).max())
+    grid[1, 0].set_ylim(0, 1.06 * most if most else 1.0)  # one scale for both ends
     _name_rows(grid[0, 0], places, names, material)
     grid[1, 0].set_ylabel("share of a person's ratings", fontsize=SMALL)
     figure.supxlabel(
@@ -76,7 +79,7 @@ def _name_rows(axes: Axes, places: list[float], names: pd.DataFrame, material: M
     ratings = [int(count) for count in names["ratings"]]
     lods = [str(lod) for lod in names["lod"]]
     axes.set_yticks(places, [f"{lod} ({people(n)})" for lod, n in zip(lods, ratings, strict=True)])
-    axes.set_ylim(places[-1] + 0.6, places[0] - 1.0)
+    axes.set_ylim(places[-1] + 0.6, places[0] - 1.4)
     for y, distance, is_first in zip(places, distances, first, strict=True):
         if is_first:
             axes.text(0, y - 0.5, distance_label(distance, material.tables),
@@ -122,4 +125,3 @@ def _draw_people(axes: Axes, table: pd.DataFrame, rating: int) -> None:
     )
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.yaxis.set_major_formatter(lambda value, _: f"{100 * value:.0f} %")
-    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))

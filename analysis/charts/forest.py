@@ -15,11 +15,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from analysis.charts.material import Material
-from analysis.charts.parts import records
 from analysis.charts.rows import draw_span, row_chart, write_beside
 from analysis.charts.style import INK, SMALL, VERDICT_COLOURS, VERDICT_MARKERS, message_figure
 from analysis.decision.verdict_tables import effect_table, verdict_table
 from analysis.decision.verdicts import NOT_SHOWN
+from analysis.tables.records import records
 from analysis.words.wording import number, people, percent
 
 TITLE: Final = "What is lost against the highest LoD, and who notices"

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from analysis.charts.material import Material
-from analysis.charts.parts import clip_label, head_columns, records, upright_in
+from analysis.charts.parts import clip_label, head_columns, upright_in
 from analysis.charts.style import (
     ALARM,
     NO_RATINGS,
@@ -24,6 +24,7 @@ from analysis.charts.style import (
 )
 from analysis.descriptive.means import person_means
 from analysis.tables.ordering import in_order
+from analysis.tables.records import records
 from analysis.words.wording import people
 
 HEAT_MAP: Final = "What each person gave to what"

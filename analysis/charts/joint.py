@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from analysis.charts.material import Material
-from analysis.charts.parts import records
 from analysis.charts.rows import draw_span, row_chart, span_of, write_beside
 from analysis.charts.style import (
     QUIET,
@@ -22,6 +21,7 @@ from analysis.charts.style import (
 )
 from analysis.estimates.joint import Joint
 from analysis.tables.ordering import lod_order
+from analysis.tables.records import records
 from analysis.words.wording import number, people, percent
 
 JOINT: Final = "Ratings and comparisons on one scale"
@@ -78,7 +78,7 @@ def joint_scale(material: Material) -> Figure:
         groups=[str(row["distance"]) for row in rows],
         names=[str(row["lod"]) for row in rows],
         widths=(1.2, 1.0) if has_loss else (1.0,),
-        footer_in=0.45,
+        footer_in=0.6,
     )
     for i, (y, row) in enumerate(zip(chart.places, rows, strict=True)):
         colour, marker = lod_colour(row["lod"], lods), lod_marker(row["lod"], lods)
@@ -93,14 +93,15 @@ def joint_scale(material: Material) -> Figure:
             write_beside(chart.panels[1], y, f"interval {percent(row['width_ratio'])}")
     first = f"{rows[0]['lod']} at {rows[0]['distance']} = 0"
     chart.panels[0].set_xlabel(
-        f"latent realism, sd of one person's ratings\n({first}; grey: by the ratings alone)",
+        f"latent realism, sd of one person's ratings\n({first};\ngrey: by the ratings alone)",
         fontsize=SMALL,
     )
     _in_jod(chart.panels[0], joint)
     if has_loss:
         chart.panels[1].axvline(0, color="#999999", linewidth=0.8, zorder=0)
         chart.panels[1].set_xlabel(
-            "loss to the highest LoD, rating points\n(beside: its width, ratings alone = 100 %)",
+            "loss to the highest LoD,\nrating points (beside: width of its\n"
+            "interval, ratings alone = 100 %)",
             fontsize=SMALL,
         )
     least, most = (number(table[f"jod_per_unit_{end}"].iloc[0]) for end in ("low", "high"))

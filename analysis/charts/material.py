@@ -13,6 +13,7 @@ from analysis.diagnostics.residuals import quantile_residuals
 from analysis.inference.deciding import rng_of
 from analysis.inference.inferring import Inference, infer
 from analysis.inference.leaving_out import verdicts_without_each
+from analysis.inference.leaving_out_effects import effects_without_each
 from analysis.screening.flags import flags_of
 from analysis.screening.signals import observer_signals
 from analysis.screening.weights import observer_weights
@@ -78,6 +79,10 @@ class Material:
     def left_out(self) -> pd.DataFrame:
         """Every verdict without each person, whoever it is."""
         own = self.inference
-        return verdicts_without_each(
-            own.decisions, own.realism, own.noticing, comparisons=self.tables.comparisons
+        rows = self.tables.comparisons
+        parts = (
+            verdicts_without_each(own.decisions, own.realism, own.noticing, comparisons=rows),
+            effects_without_each(own.effects, own.realism, own.noticing, comparisons=rows),
         )
+        told = [part for part in parts if len(part)]
+        return pd.concat(told, ignore_index=True) if told else parts[0]

@@ -9,7 +9,6 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from analysis.charts.material import Material
-from analysis.charts.parts import records
 from analysis.charts.rows import draw_span, row_chart, span_of, write_beside
 from analysis.charts.style import (
     QUIET,
@@ -21,6 +20,7 @@ from analysis.charts.style import (
 from analysis.descriptive.means import mean_ratings
 from analysis.estimates.preference import Preference
 from analysis.tables.ordering import lod_order
+from analysis.tables.records import records
 from analysis.words.wording import people
 
 LATENT: Final = "Realism by the ordinal mixed model"

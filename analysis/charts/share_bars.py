@@ -18,10 +18,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from analysis.charts.parts import clip_label, grouped_places, head_groups, readable_on, records
+from analysis.charts.parts import clip_label, grouped_places, head_groups, readable_on
 from analysis.charts.style import INK, PAGE_WIDTH_IN, SMALL, message_figure, new_figure, tidy
 from analysis.descriptive.shares import PAIRED
 from analysis.tables.reading import Tables
+from analysis.tables.records import records
 
 _ROW_IN: Final = 0.36
 _MOST_IN: Final = 7.4  # all rows together: a page with its caption

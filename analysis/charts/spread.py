@@ -14,7 +14,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from analysis.charts.material import Material
-from analysis.charts.parts import lod_legend, records
+from analysis.charts.parts import lod_legend
 from analysis.charts.style import (
     INK,
     QUIET,
@@ -28,6 +28,7 @@ from analysis.charts.style import (
 from analysis.descriptive.means import mean_ratings
 from analysis.descriptive.shares import clips_or_pairings
 from analysis.tables.ordering import lod_order
+from analysis.tables.records import records
 from analysis.words.wording import number
 
 SPREAD: Final = "Where people disagree"

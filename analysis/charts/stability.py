@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import pandas as pd
@@ -9,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from analysis.charts.material import Material
-from analysis.charts.parts import head_columns, records, upright_in
+from analysis.charts.parts import head_columns, upright_in
 from analysis.charts.style import (
     INK,
     PAGE_WIDTH_IN,
@@ -19,14 +20,17 @@ from analysis.charts.style import (
     new_figure,
     tidy,
 )
+from analysis.decision.effects import EffectVerdict
+from analysis.decision.verdicts import Verdict
 from analysis.screening.sensitivity import COLUMNS
+from analysis.tables.records import records
 from analysis.words.wording import counted, listed
 
 STABILITY: Final = "Does a verdict hang on one person?"
 NO_VERDICT: Final = "No verdict could hang on anyone yet."
 USUAL: Final = "everyone"
 _ALONE: Final = "without "
-_UNMOVED: Final = "stays without (of all)"
+_UNMOVED: Final = "stays without, of {}"
 _MOST_NAMED: Final = 16
 _LETTERS: Final = {"equivalent": "E", "different": "D", "not shown": "?"}
 
@@ -37,21 +41,28 @@ def stability_table(material: Material) -> pd.DataFrame:
     Columns as in verdict-sensitivity.csv. Who was flagged is left out with all weights worked out
     anew; everybody else with those of the whole.
     """
-    decisions = material.inference.decisions
+    own = material.inference
     flagged = material.sensitivity
     parts = []
     if flagged is not None and len(flagged):
         parts.append(flagged)
-    elif decisions:
-        usual = [(d.distance, v.lod, v.outcome) for d in decisions for v in d.verdicts]
-        rows = [(USUAL, "", where, lod, name, name, False) for where, lod, name in usual]
-        parts.append(pd.DataFrame(rows, columns=list(COLUMNS)))
+    elif own.decisions:
+        parts.append(_usual([v for d in own.decisions for v in d.verdicts], USUAL))
+    if own.effects:
+        parts.append(_usual(own.effects, parts[0]["people"].iloc[0] if parts else USUAL))
     alone = material.left_out
     if len(alone):
         alone = alone.assign(people=_ALONE + alone["people"].astype(str), flags="")
-        told = set(parts[0]["people"]) if parts else set()
-        parts.append(alone[~alone["people"].isin(told)][list(COLUMNS)])
+        keys = ["people", "distance", "lod"]
+        told = {key for part in parts for key in part[keys].itertuples(index=False, name=None)}
+        is_new = [key not in told for key in alone[keys].itertuples(index=False, name=None)]
+        parts.append(alone[is_new][list(COLUMNS)])
     return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame(columns=list(COLUMNS))
+
+
+def _usual(verdicts: Sequence[Verdict | EffectVerdict], who: str) -> pd.DataFrame:
+    rows = [(who, "", v.distance, v.lod, v.outcome, v.outcome, False) for v in verdicts]
+    return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
 def stability_sentence(material: Material) -> str:
@@ -79,12 +90,16 @@ def verdict_stability(material: Material) -> Figure:
     table = stability_table(material)
     if table.empty:
         return message_figure(STABILITY, NO_VERDICT, is_simulated=material.is_simulated)
-    cells = list(dict.fromkeys(zip(table["distance"], table["lod"], strict=True)))
+    distances = list(dict.fromkeys(table["distance"]))
+    cells = sorted(
+        dict.fromkeys(zip(table["distance"], table["lod"], strict=True)),
+        key=lambda cell: distances.index(cell[0]),
+    )
     is_alone = table["people"].str.startswith(_ALONE) & (table["flags"] == "")
     moving = table[is_alone & table["is_moved"]]
     named = list(dict.fromkeys(moving["people"]))
     counted_rows = [*dict.fromkeys(table[~is_alone]["people"]), *named[:_MOST_NAMED]]
-    unmoved = _unmoved(material)
+    unmoved, count = _unmoved(material), material.left_out["people"].nunique()
     height = 0.26 * (len(counted_rows) + bool(unmoved))
     figure = new_figure(
         PAGE_WIDTH_IN,
@@ -102,7 +117,8 @@ def verdict_stability(material: Material) -> Figure:
                                  linewidth=width, edgecolor=INK))  # fmt: skip
         axes.text(x, y, _LETTERS.get(str(row["verdict"]), "–"), ha="center", va="center",
                   color="white", fontsize=SMALL, fontweight="bold")  # fmt: skip
-    names = [*counted_rows, *([_UNMOVED] if unmoved else [])]
+    names = [*counted_rows, *([_UNMOVED.format(count)] if unmoved else [])]
+
     for cell, text in unmoved.items():
         axes.text(cells.index(cell), len(counted_rows), text, ha="center", va="center",
                   fontsize=SMALL, color=INK)  # fmt: skip
@@ -124,8 +140,7 @@ def _unmoved(material: Material) -> dict[tuple[str, str], str]:
     alone = material.left_out
     groups = alone.groupby(["distance", "lod"], sort=False)["is_moved"]
     return {
-        (str(distance), str(lod)): f"{len(own) - int(own.sum())}/{len(own)}"
-        for (distance, lod), own in groups
+        (str(distance), str(lod)): f"{len(own) - int(own.sum())}" for (distance, lod), own in groups
     }
 
 

@@ -24,7 +24,7 @@ QUIET: Final = "#6b6b6b"
 FAINT: Final = "#dddddd"
 ALARM: Final = "#b3261e"
 SIMULATED: Final = "SIMULATED DATA"
-_GAP_PX: Final = 8  # between a title and that mark, at the figure's own resolution
+_GAP_IN: Final = 0.08  # between a title and that mark
 NO_RATINGS: Final = "No rating has been given yet."
 
 LOD_COLOURS: Final = {"low": "#D55E00", "medium": "#E69F00", "high": "#56B4E9", "ultra": "#0072B2"}
@@ -78,7 +78,9 @@ def shade(share: float) -> str:
 
 def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: bool) -> Figure:
     """Return an empty figure with its title, labelled across if the data are simulated."""
-    figure = Figure(figsize=(width_in, height_in), layout="constrained", facecolor="white")
+    figure = Figure(
+        figsize=(width_in, height_in), dpi=PNG_DPI, layout="constrained", facecolor="white"
+    )  # laid out as the PNG is drawn: texts are measured once for both
     FigureCanvasAgg(figure)
     heading = figure.suptitle(
         title, x=0.01, ha="left", fontsize=LARGE, fontweight="bold", color=INK
@@ -94,7 +96,7 @@ def new_figure(width_in: float, height_in: float, title: str, *, is_simulated: b
             fontweight="bold",
             color=ALARM,
         )
-        if heading.get_window_extent().x1 > mark.get_window_extent().x0 - _GAP_PX:
+        if heading.get_window_extent().x1 > mark.get_window_extent().x0 - _GAP_IN * figure.dpi:
             heading.set_text(_in_two_lines(title))
         size = 11.0 * min(width_in, 2.2 * height_in) / 2.6
         figure.text(

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.charts.parts import distance_label, draw_mean, lod_legend, records
+from analysis.charts.parts import distance_label, draw_mean, lod_legend
 from analysis.charts.style import (
     FAINT,
     INK,
@@ -27,6 +27,7 @@ from analysis.correlation import rank_correlations
 from analysis.descriptive.means import answered, mean_ratings, person_means
 from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.reading import Tables
+from analysis.tables.records import records
 from analysis.words.wording import number, p_value
 
 AGAINST_LOD: Final = "Perceived against actual level of detail"

@@ -20,16 +20,15 @@ from scipy.optimize import minimize
 
 from analysis.models.counts import Counts
 from analysis.models.likelihood import cells, log_likelihood, posteriors
+from analysis.models.optimum import Objective, hessian, inverse_of
 from analysis.models.ordinal import OrdinalModel
 from analysis.models.priors import Priors
 from analysis.models.quadrature import Grid
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.intp]
-Target = Callable[[Floats], tuple[float, Floats]]
 LOG_SCALE: Final = "log_scale"
 _SCALE_PRIOR: Final = (0.0, 1.0)
-_STEP: Final = 1e-5  # of the gradient's differences
 _SCORE_STEP: Final = 1e-4  # of the log-likelihood's central differences
 _MOST_SHARED: Final = 50.0
 
@@ -145,7 +144,7 @@ def fit_composite(model: Composite, start: Floats, *, priors: Priors) -> Composi
         return 0.5 * float(away @ away) - value, away / sds - gradient
 
     found = _climb(target, start)
-    naive = _inverse(_hessian(target, found))
+    naive = inverse_of(hessian(target, found))[0]
     return CompositeFit(model, found, sandwich(model.by_person, found, naive), naive)
 
 
@@ -157,7 +156,7 @@ def sandwich(by_person: Callable[[Floats], Floats], parameters: Floats, naive: F
     return np.asarray(naive @ spread @ naive)
 
 
-def _climb(target: Target, start: Floats) -> Floats:
+def _climb(target: Objective, start: Floats) -> Floats:
     """Minimise by BFGS from a start near enough for its curvature to be of use."""
     size = max(1.0, float(np.abs(target(start)[1]).max()))
 
@@ -166,7 +165,7 @@ def _climb(target: Target, start: Floats) -> Floats:
         return value / size, gradient / size
 
     options: Any = {"gtol": 1e-5, "maxiter": 200}
-    options["hess_inv0"] = _inverse(_hessian(target, start)) * size
+    options["hess_inv0"] = inverse_of(hessian(target, start))[0] * size
     found = minimize(scaled, start, jac=True, method="BFGS", options=options)
     return np.asarray(found.x, dtype=float)
 
@@ -178,16 +177,3 @@ def _scores(by_person: Callable[[Floats], Floats], parameters: Floats) -> Floats
         for step in np.eye(len(parameters)) * _SCORE_STEP
     ]
     return np.column_stack(columns)
-
-
-def _hessian(target: Target, parameters: Floats) -> Floats:
-    centre = target(parameters)[1]
-    steps = np.eye(len(parameters)) * _STEP
-    rows = np.array([(target(parameters + step)[1] - centre) / _STEP for step in steps])
-    return np.asarray((rows + rows.T) / 2)
-
-
-def _inverse(hessian: Floats) -> Floats:
-    values, vectors = np.linalg.eigh(hessian)
-    inverse = (vectors / np.maximum(values, 1e-6)) @ vectors.T
-    return np.asarray((inverse + inverse.T) / 2)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -79,4 +79,3 @@ PROBIT: Final = Link("probit", 1.0, ndtr, log_ndtr, _normal_log_pdf, ndtri)
 LOGIT: Final = Link(
     "logit", np.pi / np.sqrt(3.0), expit, log_expit, _logistic_log_pdf, _logistic_quantile
 )
-LINKS: Final[Mapping[str, Link]] = {link.name: link for link in (PROBIT, LOGIT)}

@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from analysis.power.outcome import Outcome
+from analysis.tables.records import records
 from analysis.words.wording import number, percent
 
 Row = Mapping[str, Any]
@@ -41,12 +42,7 @@ def table_lines(outcome: Outcome) -> Iterator[str]:
 
 def by_people(rows: pd.DataFrame) -> list[dict[str, Any]]:
     """Return rows by rising number of people."""
-    return as_records(rows.sort_values("participants"))
-
-
-def as_records(rows: pd.DataFrame) -> list[dict[str, Any]]:
-    """Return rows as they stand."""
-    return [{str(name): value for name, value in row.items()} for _, row in rows.iterrows()]
+    return records(rows.sort_values("participants"))
 
 
 def _cell(row: Row, name: str) -> str:

@@ -13,6 +13,7 @@ from analysis.curves.curve import SizeCurve, Threshold
 from analysis.decision.verdict_tables import effect_table
 from analysis.inference.inferring import Inference
 from analysis.report.tables import ReportTable
+from analysis.tables.records import records
 from analysis.words.wording import interval, number, percent
 
 _QUESTIONS = {"noticed": "noticed", "preferred": "best LoD preferred", "rated": "rated lower"}
@@ -36,7 +37,7 @@ def effects_table(inference: Inference) -> ReportTable:
             percent(row["noticed_excess"]),
             _shares(row["noticed_excess_low"], row["noticed_excess_high"]),
         )
-        for row in _records(effect_table(inference.effects))
+        for row in records(effect_table(inference.effects))
     )
     head = ("distance", "LoD", "verdict", "points below the best", "bounds", "noticed beyond")
     return ReportTable(
@@ -104,7 +105,7 @@ def joint_table(inference: Inference) -> ReportTable:
             _span(row, "loss"),
             _span(row, "loss_alone"),
         )
-        for row in _records(found)
+        for row in records(found)
     )
     head = ("distance", "LoD", "mean rating", "95 % CI", "below the best", "95 % CI")
     return ReportTable(
@@ -134,7 +135,3 @@ def _shares(low: float, high: float) -> str:
 def _span(row: dict[str, Any], name: str) -> str:
     low, high = (row.get(f"{name}_{end}", float("nan")) for end in ("low", "high"))
     return "–" if pd.isna(low) else interval(low, high)
-
-
-def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
-    return [{str(name): value for name, value in row.items()} for row in table.to_dict("records")]

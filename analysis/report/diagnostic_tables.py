@@ -13,6 +13,7 @@ from analysis.diagnostics.rivals import METRIC
 from analysis.estimates.groups import FEWEST, OUTCOMES, QUESTIONS
 from analysis.power.needed import POWER
 from analysis.report.tables import ReportTable
+from analysis.tables.records import records
 from analysis.words.wording import interval, number, percent
 
 _NONE: Final = "–"
@@ -27,7 +28,7 @@ def p_text(p: float) -> str:
 
 def rivals_table(found: pd.DataFrame) -> ReportTable:
     """Return the models of ratings side by side; the report's own is marked."""
-    rows = tuple(_rival(row) for row in _records(found))
+    rows = tuple(_rival(row) for row in records(found))
     how = ", ".join(dict.fromkeys(word for word in found["left_out_by"] if word))
     note = (
         "* Verdicts rest on this one. Log-likelihood and AIC: maximum likelihood without priors; "
@@ -56,7 +57,7 @@ def checks_table(found: pd.DataFrame) -> ReportTable:
             p_text(row["p_holm"]),
             "fits" if row["fits"] else "does not fit",
         )
-        for row in _records(found)
+        for row in records(found)
     )
     note = (
         "Residuals: randomised quantile residuals, standard normal where the model is right (Dunn "
@@ -80,7 +81,7 @@ def odds_table(found: pd.DataFrame) -> ReportTable:
             p_text(row["p"]),
             str(row["note"]),
         )
-        for row in _records(found)
+        for row in records(found)
     )
     note = (
         "Likelihood-ratio tests as R's scale_test and nominal_test: may the scatter of ratings, or "
@@ -99,7 +100,7 @@ def odds_table(found: pd.DataFrame) -> ReportTable:
 
 def groups_table(found: pd.DataFrame) -> ReportTable:
     """Return what groups of people differ in."""
-    rows = tuple(_group(row) for row in _records(found))
+    rows = tuple(_group(row) for row in records(found))
     note = (
         "Each group against all others who answered the question, by one number per person "
         "(Welch's t): mean rating by the P.910 bias, scatter as a ratio of inconsistencies, the "
@@ -119,7 +120,7 @@ def groups_table(found: pd.DataFrame) -> ReportTable:
 
 def detectable_table(found: pd.DataFrame, margins: Margins) -> ReportTable:
     """Return the smallest margins that the study could have shown."""
-    rows = tuple(_detectable(row) for row in _records(found))
+    rows = tuple(_detectable(row) for row in records(found))
     note = (
         f"For a LoD that truly is as good as the best: within this margin {percent(POWER)} of such "
         f"studies show it, each test at {percent(margins.confidence)}; from this study's own "
@@ -138,10 +139,6 @@ def detectable_table(found: pd.DataFrame, margins: Margins) -> ReportTable:
         text_columns=2,
         note=note,
     )
-
-
-def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
-    return [{str(name): value for name, value in row.items()} for _, row in table.iterrows()]
 
 
 def _rival(row: Mapping[str, Any]) -> tuple[str, ...]:

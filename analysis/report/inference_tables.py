@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import pandas as pd
 
 from analysis.decision.verdicts import Verdict
 from analysis.inference.inferring import Inference
 from analysis.report.tables import ReportTable
+from analysis.tables.records import records
 from analysis.words.wording import interval, number, percent
-
-
-def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
-    return [dict(row) for _, row in table.iterrows()]
 
 
 def inference_tables(inference: Inference) -> list[ReportTable]:
@@ -73,7 +67,7 @@ def _realism(inference: Inference) -> ReportTable:
     rows: list[tuple[str, ...]] = []
     note = ""
     if inference.realism is not None:
-        for i, row in enumerate(_records(inference.realism.table())):
+        for i, row in enumerate(records(inference.realism.table())):
             latent = interval(row["latent_low"], row["latent_high"]) if i else "reference"
             rows.append(
                 (
@@ -120,7 +114,7 @@ def _preference(inference: Inference) -> ReportTable:
     rows: list[tuple[str, ...]] = []
     note = ""
     if inference.preference is not None:
-        for row in _records(inference.preference.table()):
+        for row in records(inference.preference.table()):
             is_free = bool(np.isfinite(row["jod_low"]))
             rows.append(
                 (
@@ -151,7 +145,7 @@ def _noticing(inference: Inference) -> ReportTable:
     rows: list[tuple[str, ...]] = []
     note = ""
     if inference.noticing is not None:
-        for row in _records(inference.noticing.table()):
+        for row in records(inference.noticing.table()):
             rows.append(
                 (
                     str(row["distance"]),

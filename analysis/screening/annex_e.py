@@ -30,12 +30,10 @@ _CLOSE: Final = 1e-8
 class BiasModel:
     """The stimuli's ``quality`` (n_stimuli,), people's ``bias`` and ``inconsistency`` (n_people,).
 
-    Biases sum to zero. ``quality_error`` is the paper's (sum_i v_i^-2)^-1/2 over the people who
-    rated a stimulus; the ITU's demonstration takes each stimulus's own scatter instead.
+    Biases sum to zero.
     """
 
     quality: Floats
-    quality_error: Floats
     bias: Floats
     inconsistency: Floats
 
@@ -68,8 +66,7 @@ def bias_and_inconsistency(
         if np.linalg.norm(quality - before) < _CLOSE:
             break
     centre = bias.mean() if n_people else 0.0
-    error = sums(shown.stimulus, (scatter**-2)[shown.person], n_stimuli) ** -0.5
-    return BiasModel(quality + centre, error, bias - centre, scatter)
+    return BiasModel(quality + centre, bias - centre, scatter)
 
 
 def _free(shown: Presented, scatter: Floats) -> Floats:

@@ -28,7 +28,6 @@ LEVELS: Final = ("off", "low", "medium", "high", "ultra")
 STANDARD_LODS: Final = ("low", "medium", "high", "ultra")
 DISTANCES: Final = ("macroscopic", "near", "medium", "far")
 EYES: Final = ("left", "right")
-COMPARISONS: Final = ("-1", "0", "1")
 NOTICED: Final = ("yes", "unsure", "no")
 SCALE: Final = (1, 5)
 """Lowest and highest rating of the thesis's scale (Appendix B, question 4)."""

@@ -26,7 +26,6 @@ Array = npt.NDArray[np.float64]
 CAMERA_MM: Final = 2.6  # above the iris plane: still below the cornea
 HALF_MM: Final = 5.2  # half the side of the square that the camera sees
 DISC_MM: Final = 5.0  # what is compared: beyond it lie the limbus's soft shadow and the root
-SUN_ANGLES_DEG: Final = (0, 30, 45, 60, 70)
 CAUSTIC_PX: Final = 256  # of the level high: 0.05 mm
 MATT: Final = 0.02  # the iris's reflectance: what it sends back to itself counts for nothing
 _GREY: Final = np.full((2, 2, 3), 0.5)

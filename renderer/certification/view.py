@@ -29,7 +29,6 @@ Mask = npt.NDArray[np.bool_]
 TARGET_MM: Final = np.array([0.0, 0.0, LIMBUS_Z_MM])  # the middle of every picture
 HALF_MM: Final = 8.6  # half the picture's side at the eye: the iris and the white between the lids
 ROOT_MM: Final = 5.5  # from here on the iris fades into the limbus
-REGIONS: Final = ("iris", "limbus", "sclera", "whole eye")
 
 
 @dataclass(frozen=True)

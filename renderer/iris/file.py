@@ -21,7 +21,6 @@ from renderer.iris.maps import BASE_PX
 
 Arrays = dict[str, npt.NDArray[Any]]
 
-SUFFIX: Final = ".npz"
 # Type and shape of every array; None is a side of any length that divides the maps'.
 LAYOUT: Final[dict[str, tuple[str, tuple[int | None, ...]]]] = {
     "albedo": ("uint16", (BASE_PX, BASE_PX, 3)),

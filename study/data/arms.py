@@ -145,16 +145,6 @@ def counts(db: Database, study: Study, *, simulated: bool = False) -> dict[Arm, 
     return {arm: filled[arm] for arm in all_arms(study.definition)}
 
 
-def row_counts(db: Database, study: Study, *, simulated: bool = False) -> dict[int, int]:
-    """Return completed participants plus live leases of every row of the orders, from 1."""
-    filled = db.look(lambda: _filling(db, study.id, simulated=simulated))
-    found = dict.fromkeys(range(1, len(order_rows(study.definition)) + 1), 0)
-    for (_, number), count in filled.items():
-        if number is not None:
-            found[number] += count
-    return found
-
-
 def arm_of(row: ParticipantRow | Participant) -> Arm | None:
     """Return a participant's arm, or None while they have none."""
     if row.size is None or row.orbit_direction is None:

@@ -5,10 +5,7 @@ Pure arithmetic on numbers from 0; it knows neither clips nor people.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Sequence
 from functools import cache
-from itertools import pairwise
 
 Row = tuple[int, ...]
 
@@ -30,8 +27,3 @@ def williams(count: int) -> tuple[Row, ...]:
     rows = tuple(tuple((item + shift) % count for item in first) for shift in range(count))
     # With an odd number the differences come twice or never; the rows read backwards mend that.
     return rows if count % 2 == 0 or count == 1 else (*rows, *(row[::-1] for row in rows))
-
-
-def carry_over(rows: Iterable[Sequence[int]]) -> Counter[tuple[int, int]]:
-    """Count how often each item comes right after each other: ``(before, after)`` -> times."""
-    return Counter(pair for row in rows for pair in pairwise(row) if pair[0] != pair[1])

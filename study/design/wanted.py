@@ -115,14 +115,6 @@ class WithClips(Contents):
             **self.scene.model_dump(),
         )
 
-    def clip_specs(self, size: Size, orbit_direction: str) -> dict[str, ClipSpec]:
-        """Return clip id -> spec of every clip, practice included, for one size and direction."""
-        return {
-            wanted.clip.id: wanted.spec
-            for wanted in self._wanted
-            if (wanted.size, wanted.orbit_direction) == (size, orbit_direction)
-        }
-
     def wanted_specs(self) -> list[WantedClip]:
         """Return what to render in the order in which it is needed.
 

@@ -197,7 +197,7 @@ def test_people_get_blocks_and_rows_in_turn(
         people.append(walk.participant)
     assert {Counter(arms.counts(db, study).values())[1], len(people)} == {12}
     assert Counter(person.block for person in people) == dict.fromkeys(range(1, 7), 2)
-    assert arms.row_counts(db, study) == dict.fromkeys(range(1, 5), 3)
+    assert Counter(person.order_row for person in people) == dict.fromkeys(range(1, 5), 3)
     for person in people:
         mine = trials.all_trials(db, person)
         assert [t.clip for t in mine] == [

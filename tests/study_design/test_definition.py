@@ -131,7 +131,8 @@ def test_a_clip_spec_carries_what_the_file_says(raw: dict[str, Any]) -> None:
     raw["scene"] = {"sun_azimuth_deg": 10.0, "crowd": 0}
     raw["preset"] = "calibrated"
     definition = parse_definition(raw)
-    spec = definition.clip_specs(Size(width=640, height=360), "leftward")["a"]
+    size = Size(width=640, height=360)
+    spec = definition.clip_spec(definition.clips[0], size=size, orbit_direction="leftward")
     assert (spec.left, spec.right) == (Detail.uniform("low"), Detail.uniform("ultra"))
     assert (spec.width, spec.height, spec.orbit_direction) == (640, 360, "leftward")
     assert (spec.iris_seed, spec.iris_colour, spec.pupil_mm) == (7, "green", 3.0)

@@ -19,8 +19,12 @@ def test_a_clip_shows_the_iris_that_it_names(raw: dict[str, Any]) -> None:
     raw["eye"] = {"iris_seed": 7, "iris_colour": "hazel", "pupil_mm": 3.0}
     raw["irises"] = {"dark": {"iris_seed": 9, "iris_colour": "brown"}}
     raw["clips"][0]["iris"] = "dark"
-    specs = parse_definition(raw).clip_specs(read_size("320x180"), "leftward")
-    eyes = [(specs[n].iris_seed, specs[n].iris_colour, specs[n].pupil_mm) for n in "ab"]
+    definition, size = parse_definition(raw), read_size("320x180")
+    specs = [
+        definition.clip_spec(clip, size=size, orbit_direction="leftward")
+        for clip in definition.clips
+    ]
+    eyes = [(spec.iris_seed, spec.iris_colour, spec.pupil_mm) for spec in specs]
     assert eyes == [(9, "brown", 3.0), (7, "hazel", 3.0)]
 
 
