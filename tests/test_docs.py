@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 import typing
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,7 +14,8 @@ import pytest
 from pydantic import BaseModel
 
 from analysis import COLUMNS, Column
-from study.design.definition import StudyDefinition
+from study.design.audit import warnings
+from study.design.definition import StudyDefinition, parse_definition
 from study.design.parts import Size
 
 ROOT = Path(__file__).parent.parent
@@ -59,14 +61,39 @@ def test_every_key_of_a_study_file_is_explained() -> None:
     assert explained == keys
 
 
-def links(document: Path) -> list[str]:
-    targets = re.findall(r"\]\(([^)#]+)[^)]*\)", document.read_text(encoding="utf-8"))
-    return [target for target in targets if "://" not in target]
+def links(document: Path) -> list[tuple[str, str]]:
+    """Return file and anchor of each link within the documents; an empty file is the same one."""
+    targets = re.findall(r"\]\(([^)]+)\)", document.read_text(encoding="utf-8"))
+    parts = [target.partition("#") for target in targets if "://" not in target]
+    return [(file, anchor) for file, _, anchor in parts]
+
+
+def anchors(document: Path) -> set[str]:
+    """Return the anchors of a document's headings, as GitHub makes them."""
+    text = re.sub(r"(?ms)^```.*?^```$", "", document.read_text(encoding="utf-8"))
+    titles = re.findall(r"(?m)^#+ (.+)$", text)
+    return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
 def test_every_link_leads_somewhere(document: Path) -> None:
-    assert [target for target in links(document) if not (document.parent / target).exists()] == []
+    for file, anchor in links(document):
+        target = document.parent / file if file else document
+        assert target.exists(), file
+        assert not anchor or anchor in anchors(target), f"{file}#{anchor}"
+
+
+def test_the_whole_study_of_the_documents_can_be_checked() -> None:
+    text = (ROOT / "docs" / "study-file.md").read_text(encoding="utf-8").split("## A whole study")
+    study = parse_definition(tomllib.loads(re.findall(r"(?ms)^```toml\n(.*?)^```$", text[1])[0]))
+    shown = len(study.irises), len(study.distances), len(study.trial_clips), len(study.gold)
+    assert shown == (2, 3, 12, 1)
+    assert "PROLIFIC_PID" in {each.name for each in study.recruiting.parameters}
+    assert unanswered(study) == ["questions: none is called noticed; the analysis goes without it"]
+
+
+def unanswered(study: StudyDefinition) -> list[str]:
+    return [line for line in warnings(study) if line.startswith("questions: ")]
 
 
 def test_every_file_that_the_decisions_name_exists() -> None:

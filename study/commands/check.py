@@ -119,17 +119,21 @@ def summary(definition: StudyDefinition) -> Iterator[str]:
     seconds = sum(entry.spec.duration_s for entry in wanted)
     yield f"{definition.title} ({definition.key}, version {definition.version})"
     files = len({w.spec.clip_id for w in wanted})
+    clips = (
+        _counted(definition.trial_clips, "clip"),
+        f"{len(definition.practice)} for practice" if definition.practice else "",
+        f"{len(definition.gold)} gold" if definition.gold else "",
+    )
     yield (
-        f"{len(definition.trial_clips)} clips and {len(definition.practice)} for practice"
-        f"{f' and {len(definition.gold)} gold' if definition.gold else ''}, in "
+        f"{' and '.join(filter(None, clips))}, in "
         f"{' and '.join(map(str, definition.sizes))}, "
         f"{' and '.join(definition.orbit.directions)}: {files} files, {seconds:g} s of video"
     )
     first = len({clip.id for clip in (*definition.practice, *definition.blocks[0])})
     yield f"The first participant can start when {first + len(definition.gold)} of them are there"
     yield (
-        f"{len(definition.about)} questions about the participant, {len(definition.questions)} "
-        "after each clip"
+        f"{_counted(definition.about, 'question')} about the participant, "
+        f"{len(definition.questions)} after each clip"
     )
     if definition.attention:
         yield f"Attention questions: {', '.join(map(_attention_place, definition.attention))}"
@@ -145,6 +149,10 @@ def summary(definition: StudyDefinition) -> Iterator[str]:
         irises = ", ".join(one.iris for one in alike if one.iris is not None)
         yield f"{_clip_line(clip.pairing, clip, width)}{irises}{mark}".rstrip()
     yield ""
+
+
+def _counted(things: Sequence[object], one: str) -> str:
+    return f"{len(things)} {one if len(things) == 1 else f'{one}s'}"
 
 
 def _attention_place(asked: Attention) -> str:

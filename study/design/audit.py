@@ -20,6 +20,8 @@ from study.design.schedule import order_rows
 from study.design.unseen import unseen_differences
 
 LONG_MIN: Final = 30.0  # BT.500 ends a sitting here
+ANALYSED: Final = ("rating_left", "rating_right", "comparison", "noticed")
+"""Questions that the analysis understands."""
 
 
 def audit(definition: StudyDefinition) -> Audit:
@@ -147,9 +149,15 @@ def _general(definition: StudyDefinition) -> Iterator[str]:
     if minutes(definition) > LONG_MIN:
         yield f"clips: a visit of about {round(minutes(definition))} minutes tires people"
     asked = {question.id for question in each_asked(definition.questions)}
-    for name in ("rating_left", "rating_right", "comparison", "noticed"):
-        if name not in asked:
-            yield f"questions: none is called {name}; the analysis goes without it"
+    lacking = [name for name in ANALYSED if name not in asked]
+    if len(lacking) == len(ANALYSED):
+        yield (
+            f"questions: none is called {', '.join(lacking)}; ocularist analyse knows these alone "
+            "and will have nothing to say about the answers, so give these names to questions that "
+            "ask the same"
+        )
+    else:
+        yield from (f"questions: none is called {n}; the analysis goes without it" for n in lacking)
     for distance in definition.distances:
         motions = {c.motion for c in definition.trial_clips if c.distance == distance}
         if len(motions) > 1:

@@ -74,6 +74,15 @@ def test_warnings_name_what_is_worth_a_second_look(raw: dict[str, Any]) -> None:
     assert [line[: len(start)] for line, start in zip(found, starts, strict=False)] == starts
 
 
+def test_a_study_that_asks_nothing_the_analysis_knows_is_told_so(raw: dict[str, Any]) -> None:
+    raw["questions"] = [{"id": "mood", "kind": "text", "text": "How does it look?"}]
+    (told,) = [line for line in audit.warnings(parse_definition(raw)) if "questions: " in line]
+    assert told.startswith(
+        "questions: none is called rating_left, rating_right, comparison, noticed; ocularist "
+        "analyse knows these alone and will have nothing to say"
+    )
+
+
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_equal_levels_differ_nowhere(effect: str) -> None:
     for level in LEVELS:
