@@ -9,7 +9,7 @@ those of the designer's answer: realism not lower by the margin, and not noticed
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pandas as pd
 
@@ -112,7 +112,7 @@ def decide_effects(
             margins=margins,
         )
         made.setdefault(lod, []).append(verdict)
-    return [verdict for own in made.values() for verdict in _adjusted(own)]
+    return [verdict for own in made.values() for verdict in decided(own)]
 
 
 def _best(realism: Realism, distance: str, ranks: Mapping[str, float]) -> str | None:
@@ -131,8 +131,6 @@ def _verdict(
     distance, lod, best = place
     seen = excess_of(noticing, place)
     noticed = seen and against(*seen, margins.noticed_share, confidence=margins.confidence)
-    p_equivalent = max(realism.p_beyond, noticed.p_beyond if noticed else 1.0)
-    lesser = [test.p_within for test in (realism, noticed) if test]
     return EffectVerdict(
         distance=distance,
         lod=lod,
@@ -140,26 +138,29 @@ def _verdict(
         changes=_changes(levels.get(lod, {}), levels.get(best, {})),
         realism=realism,
         noticed=noticed,
-        p_equivalent=p_equivalent,
-        p_different=min(1.0, len(lesser) * min(lesser)),  # either of the two may show it
+        p_equivalent=1.0,
+        p_different=1.0,
         level=1.0 - margins.confidence,
     )
 
 
-def _adjusted(verdicts: Sequence[EffectVerdict]) -> list[EffectVerdict]:
-    """Adjust one LoD's p values over its distances."""
-    equivalent = holm([own.p_equivalent for own in verdicts])
-    different = holm([own.p_different for own in verdicts])
+def decided(verdicts: Sequence[EffectVerdict]) -> list[EffectVerdict]:
+    """Return one LoD's verdicts with the p values of their tests, adjusted over its distances."""
+    equivalent, different = (
+        holm(own) for own in zip(*(_p_values(own) for own in verdicts), strict=True)
+    )
     return [
-        EffectVerdict(
-            **{
-                **vars(own),
-                "p_equivalent": float(equivalent[i]),
-                "p_different": float(different[i]),
-            }
-        )
-        for i, own in enumerate(verdicts)
+        replace(own, p_equivalent=float(enough), p_different=float(lesser))
+        for own, enough, lesser in zip(verdicts, equivalent, different, strict=True)
     ]
+
+
+def _p_values(own: EffectVerdict) -> tuple[float, float]:
+    """Return one verdict's own p values, of equivalent (which takes both tests) and different."""
+    tests = [test for test in (own.realism, own.noticed) if test]
+    beyond = max(own.realism.p_beyond, own.noticed.p_beyond if own.noticed else 1.0)
+    within = min(test.p_within for test in tests)
+    return beyond, min(1.0, len(tests) * within)  # either of the two may show it
 
 
 def _changes(own: Mapping[str, str], best: Mapping[str, str]) -> tuple[Change, ...]:

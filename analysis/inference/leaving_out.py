@@ -7,7 +7,7 @@ person's own gradient tells what they move. Intervals move with the estimate and
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -18,6 +18,7 @@ from analysis.decision.verdicts import EQUIVALENT, Decision, Test, Verdict, exce
 from analysis.diagnostics.left_out import is_refitted
 from analysis.estimates.noticing import Noticing
 from analysis.estimates.realism import Realism
+from analysis.estimates.stimuli import Cell
 from analysis.models.counts import Counts
 from analysis.models.fitting import OrdinalFit, Problem
 from analysis.models.optimum import climb
@@ -43,29 +44,18 @@ def verdicts_without_each(
     ``comparisons`` are those that ``noticing`` was fitted to. Empty for fewer than 3 or more than
     400 people.
     """
-    nothing = pd.DataFrame(columns=list(COLUMNS))
-    if realism is None or not decisions:
-        return nothing
-    raters = realism.stimuli.people
-    noticers = _noticers(comparisons) if noticing is not None else ()
-    everyone = list(dict.fromkeys([*raters, *noticers]))
-    if not FEWEST <= len(everyone) <= MOST:
-        return nothing
-    ratings = replace(realism, draws=_moved(realism.fit, raters, everyone)).expected()[1]
-    seen = noticing and replace(noticing, draws=_moved(noticing.fit, noticers, everyone))
+    each = without_each(realism, noticing, comparisons=comparisons) if decisions else None
+    if realism is None or each is None:
+        return pd.DataFrame(columns=list(COLUMNS))
     rows: list[tuple[object, ...]] = []
     for decision in decisions:
-        at = {lod: i for i, (where, lod) in enumerate(realism.cells) if where == decision.distance}
-        pairs = {v.lod: excess_of(seen, (v.distance, v.lod, v.best)) for v in decision.verdicts}
-        for person, who in enumerate(everyone):
-            own = ratings[person]
+        pairs = {v.lod: each.excess(v.distance, v.lod, v.best) for v in decision.verdicts}
+        gaps = {v.lod: each.loss(v.distance, v.lod, v.best) for v in decision.verdicts}
+        for person, who in enumerate(each.people):
             is_reached = True
             for verdict in decision.verdicts:
                 found = _without(
-                    verdict,
-                    float(own[at[verdict.best]] - own[at[verdict.lod]]),
-                    pairs[verdict.lod],
-                    person,
+                    verdict, float(gaps[verdict.lod][person]), pairs[verdict.lod], person
                 )
                 found = replace(found, is_reached=is_reached)
                 is_reached = is_reached and found.outcome == EQUIVALENT
@@ -74,15 +64,58 @@ def verdicts_without_each(
     return pd.DataFrame(rows, columns=list(COLUMNS))
 
 
+@dataclass(frozen=True)
+class WithoutEach:
+    """Estimates without each person; ``ratings`` (n_people, n_cells) are the mean ratings.
+
+    ``noticing`` is the fit whose draws are the estimates without each person, one after another.
+    """
+
+    people: tuple[str, ...]
+    cells: tuple[Cell, ...]
+    ratings: Floats
+    noticing: Noticing | None
+
+    def loss(self, distance: str, lod: str, best: str) -> Floats:
+        """Return how much lower than the best a LoD is rated, without each person (n_people,)."""
+        top, own = (self.cells.index((distance, name)) for name in (best, lod))
+        loss: Floats = self.ratings[:, top] - self.ratings[:, own]
+        return loss
+
+    def excess(self, distance: str, lod: str, best: str) -> Floats | None:
+        """Return the excess of yes over false alarms (n_people,), where the pair was shown."""
+        found = excess_of(self.noticing, (distance, lod, best))
+        return None if found is None else found[1]
+
+
+def without_each(
+    realism: Realism | None, noticing: Noticing | None, *, comparisons: pd.DataFrame
+) -> WithoutEach | None:
+    """Return what ratings and noticing say without each person, whoever it is.
+
+    None without a model, and for fewer than 3 or more than 400 people.
+    """
+    if realism is None:
+        return None
+    raters = realism.stimuli.people
+    noticers = _noticers(comparisons) if noticing is not None else ()
+    everyone = tuple(dict.fromkeys([*raters, *noticers]))
+    if not FEWEST <= len(everyone) <= MOST:
+        return None
+    ratings = replace(realism, draws=_moved(realism.fit, raters, everyone)).expected()[1]
+    seen = noticing and replace(noticing, draws=_moved(noticing.fit, noticers, everyone))
+    return WithoutEach(everyone, realism.cells, ratings, seen)
+
+
 def _without(
     verdict: Verdict,
     gap: float,
-    excess: tuple[float, Floats] | None,
+    excess: Floats | None,
     person: int,
 ) -> Verdict:
     noticed = verdict.noticed
     if noticed is not None and excess is not None:
-        noticed = _around(noticed, float(excess[1][person]))
+        noticed = _around(noticed, float(excess[person]))
     return replace(verdict, realism=_around(verdict.realism, gap), noticed=noticed)
 
 

@@ -114,7 +114,22 @@ def test_flagged_people_are_named_and_everybody_is_counted(
     count = int((table["flags"] != "").sum())
     said = texts_of(drawn_small["observers"])
     assert "S001: straight-liner" in said
+    light = int(((table["weight"] < 1) & (table["flags"] == "")).sum())
+    assert sum("inconsistent or seems not to have looked" in text for text in said) == (light > 0)
     assert f"weighs less: flagged, n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{count}" in said
+
+
+def test_the_models_shrunken_estimates_stand_below_the_answers(
+    material: Material, drawn_small: dict[str, Figure]
+) -> None:
+    table = observers_table(material)
+    assert table["model_leniency"].notna().all()
+    assert table["model_style"].isna().all()  # 18 ratings per person do not tell it
+    answers, leniency = drawn_small["observers"].axes
+    assert "above 0: lenient" in leniency.get_title()
+    shown = np.concatenate([line.get_ydata() for line in leniency.lines[:2]])
+    assert sorted(shown) == pytest.approx(sorted(table["model_leniency"]))
+    assert "bias" in answers.get_xlabel()
 
 
 def test_the_heat_map_holds_every_persons_ratings(
