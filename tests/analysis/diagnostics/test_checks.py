@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -11,6 +14,9 @@ from analysis.diagnostics.predicted import predicted_ends
 from analysis.diagnostics.residuals import quantile_residuals
 from analysis.estimates.realism import realism_of
 from analysis.tables.reading import tables_from
+
+sys.path.append(str(Path(__file__).parents[1]))
+from chance import most
 
 TAU = np.array([-1.35, -0.25, 0.85, 1.85])
 
@@ -33,10 +39,15 @@ def checked(seed: int, *, scatter: float = 0.0, style: float = 0.0) -> pd.DataFr
     return fit_checks(residuals, ends, np.random.default_rng(4))
 
 
-def test_a_right_model_seldom_fails_a_check() -> None:
-    tables = [checked(seed) for seed in range(8)]
+@pytest.mark.parametrize("studies", [8, pytest.param(150, marks=pytest.mark.long)])
+def test_a_right_model_seldom_fails_a_check(studies: int) -> None:
+    tables = [checked(seed) for seed in range(studies)]
     assert tuple(tables[0].columns) == COLUMNS
-    assert np.mean([not table["fits"].all() for table in tables]) <= 1 / 8
+    failed = [not table["fits"].all() for table in tables]
+    alone = pd.concat(tables).assign(low=lambda t: t["p"] < 0.05).groupby("check")["low"].mean()
+    print(f"{sum(failed)} of {studies} studies fail a check; alone", alone.round(3).to_dict())
+    assert np.mean(failed) <= most(studies, 0.05)
+    assert alone.max() <= most(studies, 0.07)
     assert misfits(tables[0], "residuals") == []
 
 
