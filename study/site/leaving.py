@@ -110,10 +110,12 @@ def _ended(here: Here, visitor: Visitor, heading: str, *lines: str) -> Response:
 
 
 @router.get("/next")
-def hand_over(here: Here, visitor: MaybeVisitor, wishes: Wishes) -> Response:
+def hand_over(request: Request, here: Here, visitor: MaybeVisitor, wishes: Wishes) -> Response:
     """Offer a shared computer to the next person, once nothing waits in this browser."""
     study = visitor.study if visitor else here.study(wishes)
-    return here.page("participant/next.html", **shared(study, visitor, "next", wishes=wishes))
+    frame = shared(study, visitor, "next", wishes=wishes)
+    has_withdrawn = request.cookies.get(PARTICIPANT_COOKIE) == WITHDRAWN
+    return here.page("participant/next.html", **frame, has_withdrawn=has_withdrawn)
 
 
 @router.post("/next")
@@ -126,6 +128,6 @@ def forget(
     answer = redirect("/")
     if visitor is not None:
         check_csrf(here.secret, visitor.token, first(fields, "csrf"))
-        answer.delete_cookie(PARTICIPANT_COOKIE)
+    answer.delete_cookie(PARTICIPANT_COOKIE)
     answer.delete_cookie(ARRIVAL_COOKIE)
     return answer

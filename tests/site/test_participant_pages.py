@@ -215,6 +215,21 @@ def test_withdrawing_removes_the_answers(site: Any, guest: Any) -> None:
     assert guest.at == "/withdrawn"
 
 
+def test_whoever_withdrew_hands_over_a_computer_that_holds_nothing_of_them(guest: Any) -> None:
+    guest.walk_to_trial()
+    guest.get("/next")
+    assert "All answers of the last person are stored." in guest.page.text
+    guest.get("/stop")
+    guest.post("/stop", choice="remove", sure="yes")
+    guest.get("/next")
+    assert "Nothing of the last person is stored." in guest.page.text
+    assert "All answers" not in guest.page.text
+    guest.post("/next")
+    assert "ocularist_participant" not in guest.client.cookies
+    guest.get("/withdrawn")
+    assert guest.at == "/"
+
+
 def test_stopping_keeps_the_answers_and_lets_the_browser_go(site: Any, guest: Any) -> None:
     guest.walk_to_trial()
     guest.watch()
