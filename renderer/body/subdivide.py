@@ -71,3 +71,8 @@ def _scatter(targets: Indices, values: Floats, size: int) -> Floats:
     flat, rows = values.reshape(-1, values.shape[-1]), targets.ravel()
     columns = [np.bincount(rows, weights=column, minlength=size) for column in flat.T]
     return np.stack(columns, axis=1)
+
+
+def triangles_of(quads: Indices) -> Indices:
+    """Split quads (m, 4) into triangles (2 m, 3)."""
+    return quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)

@@ -25,6 +25,7 @@ from renderer.eye.model import APPARENT_GAIN
 from renderer.eye.optics import cornea_share, fresnel, surface_height, surface_normal
 from renderer.eye.sclera import sclera_maps
 from renderer.iris.source import iris_of
+from renderer.textures.easing import ease
 
 Array = npt.NDArray[np.float64]
 
@@ -60,7 +61,7 @@ def iris_reflectance(spec: ClipSpec) -> Array:
         iris_of(spec).maps(map_px), spec.pupil_mm, size_px=IRIS_PX, half_mm=IRIS_PLANE_MM
     )
     radius = np.hypot(*plane_points(IRIS_PX, IRIS_PLANE_MM))
-    root = _smoothstep((radius - IRIS_MAP_RADIUS_MM) / (2 * ROOT_EDGE_MM) + 0.5)[..., None]
+    root = ease((radius - IRIS_MAP_RADIUS_MM) / (2 * ROOT_EDGE_MM) + 0.5)[..., None]
     return np.asarray(iris * (1 - root) + LIMBAL_TISSUE * CORNEA_IOR**2 * root)
 
 
@@ -80,11 +81,6 @@ def sclera_reflectance(spec: ClipSpec) -> Array:
     inside = float(np.mean(fresnel(cosine, ior=1 / CORNEA_IOR)))
     passed = float((1 - fresnel(1.0)) * (1 - np.mean(fresnel(cosine)))) / CORNEA_IOR**2
     return np.asarray(np.clip(shown / (passed + shown * inside), 0.0, 0.98))
-
-
-def _smoothstep(x: Array) -> Array:
-    x = np.clip(x, 0.0, 1.0)
-    return np.asarray(x * x * (3.0 - 2.0 * x))
 
 
 def front_mesh(mi: Any, material: dict[str, Any]) -> Any:

@@ -11,10 +11,11 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats
-from renderer.head.corner_sheet import CRESCENT_MM, Corner, ease, sheet_quads, span_sheet
+from renderer.head.corner_sheet import CRESCENT_MM, Corner, sheet_quads, span_sheet
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_rims import LATERAL_MM, MEDIAL_MM, soft_max
 from renderer.head.lid_shell import on_globe
+from renderer.textures.easing import ease
 
 CARUNCLE_END_MM: Final = -7.5  # towards the pupil: under the globe's surface from here on
 COVER_MM: Final = (-8.1, -9.4)  # the conjunctiva fades in over the sclera between these

@@ -10,9 +10,8 @@ import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.body.normals import vertex_normals
-from renderer.body.subdivide import subdivide
+from renderer.body.subdivide import subdivide, triangles_of
 from renderer.head.character import Figure
-from renderer.head.face_mesh import triangles_of
 
 LOWEST_MM: Final = -760.0  # the far view ends at -525
 COLLAR_MM: Final = -131.0  # the helper's own edge runs up to the ears: folded down to here

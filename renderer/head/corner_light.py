@@ -14,9 +14,9 @@ import numpy as np
 from renderer.body.makehuman import Floats, Indices
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.lids import LidRims
-from renderer.head.face_mesh import to_patch
 from renderer.head.lid_pose import LidPose
 from renderer.head.lid_rims import rim_curves
+from renderer.head.patch_space import to_patch
 from renderer.head.skin_light import SkinLight, scatter, sky_radiance
 from renderer.light import Sky
 

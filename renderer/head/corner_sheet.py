@@ -66,11 +66,6 @@ def span_sheet(corner_x: float, inner_x: float, pose: LidPose, *, grid: tuple[in
     return Sheet(np.stack([x, y, z], axis=-1), a, np.clip(b, 0, 1), opening)
 
 
-def ease(x: Floats) -> Floats:
-    x = np.clip(x, 0.0, 1.0)
-    return np.asarray(x * x * (3 - 2 * x))
-
-
 def sheet_quads(grid: tuple[int, int]) -> Indices:
     rows, columns = grid
     i, j = np.meshgrid(np.arange(rows - 1), np.arange(columns - 1), indexing="ij")

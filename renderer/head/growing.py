@@ -9,9 +9,10 @@ import moderngl
 import numpy as np
 
 from renderer.head.brows import grow_brow
-from renderer.head.face_mesh import FaceMesh, to_world
+from renderer.head.face_mesh import FaceMesh
 from renderer.head.hair import grow_hair, hair_cap
 from renderer.head.lashes import grow_lashes
+from renderer.head.patch_space import to_world
 from renderer.head.strands import StrandMesh
 
 FACE_HAIR_BIAS_MM: Final = 1.2  # hairs nearer than this to a surface are not in its shadow

@@ -17,6 +17,7 @@ from renderer.body.makehuman import Floats, Indices
 from renderer.body.normals import vertex_normals
 from renderer.head.face_mesh import FaceMesh
 from renderer.head.strand_group import Strands, joined
+from renderer.textures.easing import ease
 
 COLOUR: Final = (0.060, 0.033, 0.019)
 KNOT_MM: Final = (0.0, 18.0, -205.0)  # where the comb gathers the hair
@@ -102,8 +103,8 @@ def hair_cap(face: FaceMesh) -> HairCap:
         scalp.points_mm[used], scalp.normals[used], rows.reshape(-1, 3)
     )
     above = inside_hairline(points)
-    lift = THICKNESS_MM * _ease((above - 2.0) / 38.0)
-    sunk = SUNK_MM * (1 - _ease(above / 8.0))
+    lift = THICKNESS_MM * ease((above - 2.0) / 38.0)
+    sunk = SUNK_MM * (1 - ease(above / 8.0))
     lifted, foot = (points + normals * height[:, None] for height in (lift - sunk, lift))
     normals = vertex_normals(lifted, rows)
     return HairCap(
@@ -137,11 +138,6 @@ def _refined(points: Floats, normals: Floats, rows: Indices) -> tuple[Floats, Fl
 def _is_ear(points: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     x, y, z = np.abs(points[:, 0]), points[:, 1], points[:, 2]
     return np.asarray((x > 72.0) & (y < 5.0) & (y > -60.0) & (z > -101.0) & (z < -60.0))
-
-
-def _ease(x: Floats) -> Floats:
-    x = np.clip(x, 0.0, 1.0)
-    return np.asarray(x * x * (3 - 2 * x))
 
 
 def _comb(points: Floats, normals: Floats) -> Floats:

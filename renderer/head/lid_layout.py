@@ -15,8 +15,9 @@ from scipy import ndimage
 
 from renderer.body.makehuman import Floats
 from renderer.body.normals import unit
-from renderer.head.face_mesh import SkinPart, to_patch
 from renderer.head.lid_rims import LATERAL_MM
+from renderer.head.patch_space import to_patch
+from renderer.head.skin_part import SkinPart
 
 AROUND_MM: Final = 68.0  # what the patches' first coordinate runs over
 ACROSS_MM: Final = 17.0

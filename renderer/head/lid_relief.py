@@ -14,7 +14,6 @@ import numpy.typing as npt
 from scipy import ndimage
 
 from renderer.body.makehuman import Floats
-from renderer.head.face_mesh import SkinPart
 from renderer.head.lid_layout import (
     ACROSS_MM,
     MAP_PX,
@@ -23,6 +22,8 @@ from renderer.head.lid_layout import (
     lay_out,
     tangent_slopes,
 )
+from renderer.head.skin_part import SkinPart
+from renderer.textures.easing import ease
 from renderer.textures.micro_relief import Net, Tile, net_relief, periodic_noise
 
 JUNCTION_MM: Final = 0.62  # of skin and mucous membrane, from the lid's inner edge
@@ -115,20 +116,15 @@ def _groove(noise: Floats, *, share: float, steep: float = 3.2) -> Floats:
     return np.asarray(1.0 / (1.0 + np.exp(-steep * (noise - share))))
 
 
-def _ease(x: Floats) -> Floats:
-    x = np.clip(x, 0.0, 1.0)
-    return np.asarray(x * x * (3 - 2 * x))
-
-
 def _height(place: Layout, sources: _Sources, eye: int) -> Floats:
     """Return the relief in mm."""
     shift = 13.7 * eye
     lines, s, w = sources.lines, 1.25 * place.around, place.across
     wander = 0.5 * _sample(sources.coarse, 0.9 * place.flat[0] + shift, 0.9 * place.flat[1])
     radius, angle = from_outer_canthus(place)
-    fan = np.exp(-((angle / 1.25) ** 4)) * _ease((radius - 0.8) / 2.5) * (place.x > 10.0)
+    fan = np.exp(-((angle / 1.25) ** 4)) * ease((radius - 0.8) / 2.5) * (place.x > 10.0)
     lid = 1.0 - fan
-    skin = _ease((place.beyond + 0.25) / 0.5)
+    skin = ease((place.beyond + 0.25) / 0.5)
     plate = upper_plate(place)
 
     def crepe(scale: float, turn: float, *, share: float, seed: float) -> Floats:
@@ -142,7 +138,7 @@ def _height(place: Layout, sources: _Sources, eye: int) -> Floats:
     furrow = crepe(2.1, -0.16, share=0.9, seed=21.0)
     height = -upper * lid * (0.017 * fine + 0.020 * middle + 0.012 * (rising + falling))
     height -= lower * lid * (0.011 * fine + 0.016 * middle + 0.017 * falling + 0.008 * rising)
-    height -= lower * lid * 0.045 * furrow * _ease((place.beyond - 2.0) / 3.0)
+    height -= lower * lid * 0.045 * furrow * ease((place.beyond - 2.0) / 3.0)
     feet = _sample(lines, radius / 2.2 + 5.0 + shift, angle * 5.0 + 0.12 * wander)
     rings = _groove(_sample(lines, angle * 12.0 + shift, radius / 0.5), share=0.6)
     height -= fan * (0.060 * _groove(feet, share=0.9, steep=1.9) + 0.008 * rings)
@@ -166,7 +162,7 @@ def _margin_relief(place: Layout, sources: _Sources, shift: float) -> Floats:
 
 def upper_plate(place: Layout) -> Floats:
     """Return how much a place belongs to the upper lid's skin between lashes and crease, 0 to 1."""
-    return place.upper * _ease(place.beyond / 0.4) * _ease((3.6 - place.beyond) / 1.8)
+    return place.upper * ease(place.beyond / 0.4) * ease((3.6 - place.beyond) / 1.8)
 
 
 def _from_junction(place: Layout, sources: _Sources, shift: float) -> Floats:
@@ -184,7 +180,7 @@ def _orifices(place: Layout) -> Floats:
     jitter = np.sin(number * 12.9898) * 0.22
     along = place.around - number * 1.05 - jitter
     across = place.across - JUNCTION_MM - ORIFICES_MM - 0.08 * np.sin(number * 78.233)
-    clear = _ease((place.x + 12.5) / 2.0) * _ease((11.0 - place.x) / 2.0)  # of the canthi
+    clear = ease((place.x + 12.5) / 2.0) * ease((11.0 - place.x) / 2.0)  # of the canthi
     return np.asarray(clear * np.exp(-(along**2 + across**2) / 0.10**2))
 
 
@@ -195,7 +191,7 @@ def _blood(place: Layout, sources: _Sources, eye: int) -> Floats:
     blotches = _sample(sources.coarse, 0.8 * x + shift, 0.8 * y)
     fine = _sample(sources.coarse, 2.6 * x + 3 * shift, 2.6 * y)
     contour = _sample(sources.coarse, 1.15 * x - shift, 1.15 * y)
-    vessels = np.exp(-((contour / 0.07) ** 2)) * _ease(blotches * 0.6 + 0.25)
+    vessels = np.exp(-((contour / 0.07) ** 2)) * ease(blotches * 0.6 + 0.25)
     veined = 1.2 + 1.3 * place.upper
     blood = 0.5 * blotches + 0.4 * fine + veined * vessels
     blood += upper_plate(place) * (0.5 * blotches + 0.5 * fine)
@@ -204,12 +200,12 @@ def _blood(place: Layout, sources: _Sources, eye: int) -> Floats:
 
 def _margin_blood(place: Layout, sources: _Sources, shift: float) -> Floats:
     """Return the blood in the lid margin: the red mucocutaneous line, specks, fine vessels."""
-    on_margin = _ease(0.5 - place.beyond / 0.5)
+    on_margin = ease(0.5 - place.beyond / 0.5)
     line = np.exp(-((_from_junction(place, sources, shift) / 0.13) ** 2))
     patchy = 0.75 + 0.35 * _sample(sources.noise, 0.3 * place.around - shift, 0.3 * place.across)
     specks = _sample(sources.noise, 0.8 * place.around + shift, 0.6 * place.across)
     # Fine vessels run across the margin.
     at = _sample(sources.noise, 0.45 * place.around + 2 * shift, 0.10 * place.across)
-    vessels = np.exp(-((at / 0.10) ** 2)) * _ease(0.5 + 0.8 * specks)
+    vessels = np.exp(-((at / 0.10) ** 2)) * ease(0.5 + 0.8 * specks)
     pores = _orifices(place)
     return np.asarray(on_margin * (3.3 * line * patchy + 1.2 * specks + 1.2 * vessels + pores))

@@ -16,8 +16,9 @@ import numpy as np
 from renderer.body.makehuman import Floats
 from renderer.cache import cached_arrays
 from renderer.head.corner_light import light_corner
-from renderer.head.face_mesh import FaceMesh, seam
+from renderer.head.face_mesh import FaceMesh
 from renderer.head.skin_light import SkinLight, light_skin
+from renderer.head.skin_part import seam
 from renderer.head.sky_visibility import Draw, Region, Visible, look_up, sky_visibility
 from renderer.head.strands import StrandMesh
 from renderer.head.surfaces import Surface

@@ -13,10 +13,10 @@ import numpy as np
 from renderer.body.makehuman import Floats
 from renderer.camera import eye_centre_mm
 from renderer.head.brows import BROW_COLOUR, stubble
-from renderer.head.face_mesh import SkinPart
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import inside_hairline
 from renderer.head.lid_layout import AROUND_MM
+from renderer.head.skin_part import SkinPart
 from renderer.head.unrolling import unroll_mm
 
 SCALP: Final = 0.55  # what is dark between the hairs, as a share of their colour

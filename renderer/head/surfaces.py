@@ -13,11 +13,12 @@ from renderer.head.buffers import CellMesh
 from renderer.head.character import figure
 from renderer.head.clothing import COLOUR as WOOL_COLOUR
 from renderer.head.clothing import sweater
-from renderer.head.face_mesh import FaceMesh, SkinPart, face_mesh
+from renderer.head.face_mesh import FaceMesh, face_mesh
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair import hair_cap
 from renderer.head.lid_layout import ACROSS_MM, AROUND_MM, lid_coordinates
 from renderer.head.skin import SCALP, detail_coordinates, paint
+from renderer.head.skin_part import SkinPart
 from renderer.head.thinned import distant_patch, near_corners, near_patch
 
 GRAIN_SCALE: Final = 2.2  # the caruncle's granules are so much finer than the cheek's polygons

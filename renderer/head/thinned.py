@@ -11,12 +11,14 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats, Indices
+from renderer.body.subdivide import triangles_of
 from renderer.cache import cached_array
-from renderer.head.face_mesh import SkinPart, face_mesh, triangles_of
+from renderer.head.face_mesh import face_mesh
 from renderer.head.lid_fit import ALONG, AROUND, grid_quads
 from renderer.head.lid_layout import AROUND_MM
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.skin import paint
+from renderer.head.skin_part import SkinPart
 from renderer.head.thinning import thin
 
 SPARSE_ROW: Final = 29  # of the lid patches: from here on, every other column will do

@@ -1,1 +1,1 @@
-"""What all procedural textures share: noise, fibres, sizes, tiling."""
+"""What procedural textures and shapes share: noise, fibres, sizes, tiling, the smooth step."""

@@ -8,11 +8,12 @@ import pytest
 from renderer.eye.lids import LidRims
 from renderer.head import lid_rims
 from renderer.head.caruncle import CARUNCLE_GRID, caruncle, outer_membrane
-from renderer.head.face_mesh import face_mesh, to_patch, to_world
+from renderer.head.face_mesh import face_mesh
 from renderer.head.lid_fit import EDGE_ROW, fit_lids
 from renderer.head.lid_lap import LAP_COLUMN
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_shell import height_over_globe
+from renderer.head.patch_space import to_patch, to_world
 
 POSES = (STRAIGHT, LidPose(25.0, -20.0), LidPose(-30.0, 20.0, 0.3), LidPose(blink=1.0))
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.body.subdivide import subdivide
+from renderer.body.subdivide import subdivide, triangles_of
 from renderer.head import skin, skin_light
-from renderer.head.face_mesh import face_mesh, triangles_of
+from renderer.head.face_mesh import face_mesh
 from renderer.head.sky_visibility import DIRECTIONS, look_up
 from renderer.head.sun_shadow import orthographic
 from renderer.light import Sky

@@ -5,7 +5,8 @@ import numpy.typing as npt
 import pytest
 from scipy.spatial import cKDTree
 
-from renderer.head.face_mesh import face_mesh, triangles_of
+from renderer.body.subdivide import triangles_of
+from renderer.head.face_mesh import face_mesh
 from renderer.head.lid_fit import ALONG, AROUND, grid_quads
 from renderer.head.surfaces import SKIN_KINDS, skin_kinds
 from renderer.head.thinned import distant_patch, near_corners, near_patch

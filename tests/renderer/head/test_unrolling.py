@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from renderer.head.face_mesh import SkinPart, face_mesh, triangles_of
+from renderer.body.subdivide import triangles_of
+from renderer.head.face_mesh import face_mesh
+from renderer.head.skin_part import SkinPart
 from renderer.head.unrolling import flatten, unroll_mm
 
 
