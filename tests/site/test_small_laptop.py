@@ -1,4 +1,4 @@
-"""On a small laptop's screen the study that we recommend needs no scrolling after a clip."""
+"""The study that we recommend needs no scrolling after a clip, on small and on large screens."""
 
 from __future__ import annotations
 
@@ -32,3 +32,12 @@ def test_all_questions_and_their_button_are_seen_at_once(page: Page, visit: Any)
     assert strip is not None
     assert heading is not None
     assert strip["y"] + strip["height"] <= heading["y"]
+
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    page.reload()
+    page.locator("[data-when=watched] [data-to-questions]").click()
+    page.locator("input[name=noticed][value=yes]").check()
+    expect(page.get_by_label("What do you think was different?")).to_be_visible()
+    expect(page.locator("form [type=submit]")).to_be_in_viewport(ratio=1)
+    page.locator("[data-again]").click()
+    visit.state("watched")
