@@ -45,22 +45,23 @@ CAPTIONS: Final = {
         "to equal LoDs. Over pixels of the clip and, where the study measured it, over "
         "degrees at the observer's eye (both axes logarithmic). Lines: the fitted law with "
         "its 95 % band; symbols: what was observed at about that size, with 95 % intervals; "
-        "upright strokes: where the margin is reached. Nothing is drawn beyond the sizes "
-        "shown."
+        "upright strokes: where the margin is reached, beside the names with 95 % intervals where "
+        "there is room. Nothing is drawn beyond the sizes shown."
     ),
     "preferred-by-size": (
         "Share of people who call the best LoD more realistic than a lesser one. Over pixels "
         "of the clip and, where the study measured it, over degrees at the observer's eye "
         "(both axes logarithmic). Lines: the fitted law with its 95 % band; symbols: what was"
-        " observed at about that size, with 95 % intervals; upright strokes: where the margin"
-        " is reached. Nothing is drawn beyond the sizes shown."
+        " observed at about that size, with 95 % intervals; upright strokes: where the lesser "
+        "LoD lies 1 JOD below the best, beside the names with 95 % intervals where there is room. "
+        "Nothing is drawn beyond the sizes shown."
     ),
     "rated-by-size": (
         "How far below the best LoD a lesser one is rated. Over pixels of the clip and, where"
         " the study measured it, over degrees at the observer's eye (both axes logarithmic). "
         "Lines: the fitted law with its 95 % band; symbols: what was observed at about that "
-        "size, with 95 % intervals; upright strokes: where the margin is reached. Nothing is "
-        "drawn beyond the sizes shown."
+        "size, with 95 % intervals; upright strokes: where the margin is reached, beside the "
+        "names with 95 % intervals where there is room. Nothing is drawn beyond the sizes shown."
     ),
     "realism-per-clip": (
         "Perceived realism of each eye in each clip, grouped by viewing distance and coloured"

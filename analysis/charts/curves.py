@@ -29,6 +29,7 @@ from analysis.charts.style import (
 from analysis.curves.curve import (
     MARGIN,
     NOTICED,
+    ONE_JOD,
     PREFERRED,
     RATED,
     SHOWN,
@@ -41,6 +42,8 @@ from analysis.tables.records import records
 from analysis.words.wording import people, percent
 
 _PANEL_IN: Final = 2.7
+_MOST_TOLD: Final = 3  # curves beside which there is room for their thresholds
+_MARKED: Final = {MARGIN: "margin", ONE_JOD: "1 JOD"}  # marked on the curves
 _SIZES: Final = 2.0 ** np.arange(-8.0, 12.0)  # marks of the axis, px or degrees
 
 
@@ -101,6 +104,8 @@ def curves_along_sizes(material: Material, kind: str) -> Figure:
         axes.set_ylabel(look.axis, fontsize=SMALL)
         if measure.column == "iris_px":
             _name_distances(axes, material.tables)
+    for axes, measure in zip(panels, measures, strict=True):  # once all share their vertical axis
+        _name_curves(axes, [curve for curve in own if curve.measure == measure], lods, look)
     return figure
 
 
@@ -120,7 +125,6 @@ def _draw_panel(axes: Axes, curves: Sequence[SizeCurve], lods: Sequence[str], lo
     _draw_base(axes, curves[0], look)
     _draw_margins(axes, curves, lods)
     _scale_axes(axes, curves, look)
-    _name_curves(axes, curves, lods, look)
 
 
 def _scale_axes(axes: Axes, curves: Sequence[SizeCurve], look: _Look) -> None:
@@ -146,9 +150,11 @@ def _name_curves(axes: Axes, curves: Sequence[SizeCurve], lods: Sequence[str], l
     low, high = axes.get_ylim()
     base, is_told = curves[0].base[0], bool(look.base) and np.isfinite(curves[0].base[0])
     ends = [float(curve.value[-1]) for curve in curves] + ([base] if is_told else [])
-    places = apart(ends, least=0.085 * (high - low), low=low, high=high)
+    has_room = len(curves) <= _MOST_TOLD
+    least = (0.19 if has_room else 0.085) * (high - low)
+    places = apart(ends, least=least, low=low + 0.4 * least, high=high)
     across = axes.get_yaxis_transform()
-    names = [f"{curve.lod}, {people(curve.people)}" for curve in curves]
+    names = [f"{own.lod}, {people(own.people)}{_told(own) if has_room else ''}" for own in curves]
     names += [f"{look.base}, {percent(base)}"] if is_told else []
     for i, (y, name) in enumerate(zip(places, names, strict=True)):
         colour = INK if i < len(curves) else _base_colour(look)
@@ -158,6 +164,15 @@ def _name_curves(axes: Axes, curves: Sequence[SizeCurve], lods: Sequence[str], l
             lod = curves[i].lod
             axes.plot([1.018], [y], marker=lod_marker(lod, lods), color=lod_colour(lod, lods),
                       transform=across, clip_on=False, markersize=4.5)  # fmt: skip
+
+
+def _told(curve: SizeCurve) -> str:
+    """Say at which size the curve reaches its threshold, with the interval, in two lines more."""
+    found = [own for own in curve.thresholds if own.name in _MARKED]
+    if not found:
+        return ""
+    size, interval = curve.say(found[0]).split(" (", maxsplit=1)
+    return f"\n{_MARKED[found[0].name]}: {size}\n({interval}"
 
 
 def _base_colour(look: _Look) -> str:
@@ -175,10 +190,10 @@ def _draw_base(axes: Axes, curve: SizeCurve, look: _Look) -> None:
 
 
 def _draw_margins(axes: Axes, curves: Sequence[SizeCurve], lods: Sequence[str]) -> None:
-    """Mark on each curve the size up to which it stays within its margin."""
+    """Mark on each curve the size at which it reaches its margin, or 1 JOD."""
     for curve in curves:
         for own in curve.thresholds:
-            if own.name == MARGIN and own.where(own.size) == SHOWN:
+            if own.name in _MARKED and own.where(own.size) == SHOWN:
                 y = float(np.interp(np.log2(own.size), np.log2(curve.sizes), curve.value))
                 axes.plot([own.size], [y], marker="|", markersize=13, markeredgewidth=2,
                           color=lod_colour(curve.lod, lods), zorder=5)  # fmt: skip

@@ -29,12 +29,13 @@ from analysis.estimates.each_person import COLUMNS, each_person
 from analysis.models.ordinal import INCONSISTENCY, LENIENCY, STYLE
 from analysis.screening.weights import observer_weights
 from analysis.tables.records import records
-from analysis.words.wording import people
+from analysis.words.wording import number, people
 
 OBSERVERS: Final = "Observers: leniency, inconsistency, style"
 ALONE: Final = (
     "Leniency and inconsistency take two people who rated the same eyes; not so many yet."
 )
+_LIGHT: Final = 0.8  # weight below which a person counts for clearly less
 _MOST_NAMED: Final = 12
 _MOST_DRAWN: Final = 120  # people beside each other; of more, evenly spaced ones
 _NAMES: Final = {
@@ -93,11 +94,16 @@ def _draw_answers(axes: Axes, table: pd.DataFrame) -> None:
     """Draw bias and inconsistency of each person's own ratings; flagged people are named."""
     tidy(axes)
     is_flagged = (table["flags"] != "").to_numpy()
-    is_light = (table["weight"] < 1).to_numpy() & ~is_flagged
+    is_light = (table["weight"] < _LIGHT).to_numpy() & ~is_flagged
     for mask, marker, face, name in (
-        (~is_flagged & ~is_light, "o", "#56B4E9", "counts fully"),
-        (is_light, "s", "white", "weighs less: inconsistent or seems not to have looked"),
-        (is_flagged, "X", ALARM, "weighs less: flagged"),
+        (~is_flagged & ~is_light, "o", "#56B4E9", "weight 1 or nearly"),
+        (
+            is_light,
+            "s",
+            "white",
+            f"below {number(_LIGHT, digits=1)}: inconsistent or seems not to have looked",
+        ),
+        (is_flagged, "X", ALARM, "flagged"),
     ):
         own = table[mask]
         if len(own):

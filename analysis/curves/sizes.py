@@ -48,6 +48,8 @@ def with_size(rows: pd.DataFrame, measure: Measure) -> pd.DataFrame:
     known = np.isfinite(given) & (given > 0)
     exact = np.log2(given[known])
     part = np.round(exact * measure.per_octave).astype(int)
+    if exact.size and np.ptp(exact) * measure.per_octave < 1.0:  # one size, beside a bin's edge
+        part[:] = 0
     kept = rows[known].assign(size=exact)
     together: pd.DataFrame = kept.assign(size=kept.groupby(part)["size"].transform("mean"))
     return together

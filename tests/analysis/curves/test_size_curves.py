@@ -184,6 +184,14 @@ def test_sizes_are_taken_together_within_a_part_of_an_octave() -> None:
     assert with_size(rows, DEGREES).empty
 
 
+def test_sizes_beside_a_bins_edge_are_one() -> None:
+    """51 and 52 pixels fall into two eighths of an octave; no curve runs along them."""
+    near = pd.DataFrame({"iris_px": [51.0, 51.8, 52.4]})
+    assert with_size(near, PIXELS)["size"].nunique() == 1
+    apart = pd.DataFrame({"iris_px": [50.0, 56.0]})
+    assert with_size(apart, PIXELS)["size"].nunique() == 2
+
+
 def test_predictors_made_of_others_have_the_derivatives_of_differences() -> None:
     rng = np.random.default_rng(3)
     x = rng.uniform(3, 9, 8)
