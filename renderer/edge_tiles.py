@@ -1,4 +1,4 @@
-"""Which parts of a picture may have edges: most of a face has none.
+"""Which parts of a picture may have edges, or show the background: most of a face does neither.
 
 What is opaque, drawn with one sample per pixel, tells it. A tile without edges needs no outlines,
 and nothing to be smoothed.
@@ -20,6 +20,7 @@ from renderer.camera import View
 from renderer.program import build_program
 
 TILE_PX: Final = 8  # edge_tiles.frag reads blocks of two by two such tiles
+OPEN, EDGE = 64, 192  # it answers from here on where nothing was drawn, and where edges may be
 
 Mask = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -30,12 +31,13 @@ Runs = npt.NDArray[np.int64]
 class EdgeTiles:
     """Where a view may have edges: ``mask`` (rows from below, columns) of its tiles.
 
-    ``runs`` are the same tiles on the GPU.
+    ``runs`` are the same tiles on the GPU; beyond ``gaps`` something opaque covers every pixel.
     """
 
     mask: Mask
     runs: Boxes
     size_px: tuple[int, int]  # of the view
+    gaps: Boxes | None = None
 
     @cached_property
     def _sums(self) -> npt.NDArray[np.int64]:
@@ -66,7 +68,7 @@ class EdgeFinder:
     ) -> None:
         """``radiance`` and ``depth`` are of one sample per pixel and stay the same."""
         self._gl = gl
-        self._runs: list[Boxes] = []
+        self._boxes: list[tuple[Boxes, Boxes]] = []
         self._size = radiance.size
         self._textures = {"u_radiance": radiance, "u_depth": depth}
         self._target = gl.framebuffer([gl.texture((1, 1), 4)])
@@ -94,17 +96,20 @@ class EdgeFinder:
             )
             self._screen.render(moderngl.TRIANGLES, vertices=3)
         found = np.frombuffer(self._target.read(components=4, alignment=1), np.uint8)
-        blocks = found.reshape(size[1], size[0], 2, 2) > 0
-        mask = blocks.transpose(0, 2, 1, 3).reshape(2 * size[1], 2 * size[0])
+        blocks = found.reshape(size[1], size[0], 2, 2)
+        answers = blocks.transpose(0, 2, 1, 3).reshape(2 * size[1], 2 * size[0])
         tiles = []
         for number, (view, first, (columns, rows)) in enumerate(
             zip(views, firsts, sizes, strict=False)
         ):
-            if number == len(self._runs):
-                self._runs.append(Boxes(self._gl, self._size))
-            own = mask[: 2 * rows, 2 * first : 2 * (first + columns)]
-            self._runs[number].write(runs_of(own, view.rectangle))
-            tiles.append(EdgeTiles(own, self._runs[number], view.rectangle[2:]))
+            if number == len(self._boxes):
+                self._boxes.append((Boxes(self._gl, self._size), Boxes(self._gl, self._size)))
+            own = answers[: 2 * rows, 2 * first : 2 * (first + columns)]
+            runs, gaps = self._boxes[number]
+            # Where things end a pixel may be open between those that were read.
+            gaps.write(runs_of(own >= OPEN, view.rectangle))
+            runs.write(runs_of(own >= EDGE, view.rectangle))
+            tiles.append(EdgeTiles(own >= EDGE, runs, view.rectangle[2:], gaps))
         return tiles
 
 

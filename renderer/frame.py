@@ -1,8 +1,4 @@
-"""One frame from first pass to last.
-
-Crowd cube (only when an eye reflects moving people), then per view: head, eyes, crowd, background,
-lashes and hair; then tone curve and 8 bits.
-"""
+"""One frame from first pass to last; docs/frame.md says what follows what, and why."""
 
 from __future__ import annotations
 
@@ -179,6 +175,9 @@ class FrameRenderer:
             self._picture.use_rectangle(view.rectangle)
             queries |= self._passes.draw(view, time_s, wireframe=self.wireframe)
         tiles = self._picture.find_edges(shown)
+        self._picture.use_rectangle((0, 0, *self._picture.size))
+        for view, own in zip(shown, tiles, strict=True):
+            self._passes.draw_background(view, own)
         for view, own in zip(shown, tiles, strict=True):
             self._passes.draw_outlines(view, self._picture.outlines, own, wireframe=self.wireframe)
         self._picture.smooth_edges(shown, tiles, is_plain=is_plain)

@@ -35,7 +35,7 @@ class ViewPasses:
     def draw(
         self, view: View, time_s: float, *, wireframe: bool = False
     ) -> dict[int, moderngl.Query]:
-        """Draw what is opaque, and tears, into the current target.
+        """Draw what is opaque and near, and tears, into the current target.
 
         Returns what counts each eye's visible pixels. ``wireframe`` draws the eyes as their
         triangles' edges.
@@ -50,16 +50,23 @@ class ViewPasses:
             "eyes": lambda: queries.update(self._draw_eyes(view, wireframe)),
             "tears": lambda: self._draw_tears(view),
             "bystanders": lambda: scene.crowd.draw(**camera, time_s=time_s),
-            "background": lambda: scene.surroundings.draw_background(
-                view_matrix=view.view_matrix,
-                projection=view.projection,
-                is_smooth=self._is_approach,
-            ),
         }
         for name in self._names:
             if name in passes:
                 passes[name]()
         return queries
+
+    def draw_background(self, view: View, tiles: EdgeTiles) -> None:
+        """Fill what the last ``draw`` of a view left open; the viewport is the whole picture."""
+        if "background" in self._names:
+            self._gl.enable_only(moderngl.DEPTH_TEST)
+            self._scene.surroundings.draw_background(
+                view_matrix=view.view_matrix,
+                projection=view.projection,
+                is_smooth=self._is_approach,
+                gaps=tiles.gaps,
+                rectangle=view.rectangle,
+            )
 
     def draw_hair(self, view: View) -> None:
         """Draw what lets something through over a view whose edges are smooth."""

@@ -15,6 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.boxes import Box, Boxes
 from renderer.camera import IRIS_PX, radius_of_px
 from renderer.clip import ClipSpec
 from renderer.light import Sky
@@ -65,6 +66,7 @@ class Surroundings:
         self._panoramas: dict[Defocus, moderngl.Texture] = {}
         self._background = build_program(gl, "direction.vert", fragment="background.frag")
         self._background_screen = gl.vertex_array(self._background.gl_program, [])
+        self._gaps = build_program(gl, "direction_boxes.vert", fragment="background.frag")
 
     @functools.cached_property
     def sky(self) -> Sky:
@@ -89,24 +91,32 @@ class Surroundings:
         view_matrix: npt.NDArray[np.floating],
         projection: npt.NDArray[np.floating],
         is_smooth: bool = False,
+        gaps: Boxes | None = None,
+        rectangle: Box = (0, 0, 0, 0),
     ) -> None:
         """Fill what nothing else covered, at the far plane; draw it after all opaque things.
 
         ``is_smooth`` lets the blur change evenly with the camera's distance instead of in steps.
+        Given ``gaps`` it looks for such places within them alone: the target's viewport is then
+        the whole picture, in which the view has a ``rectangle``.
         """
         distance_mm = _distance_mm(view_matrix)
         near, far, share = _defocus(distance_mm), _defocus(distance_mm), 0.0
         if is_smooth:
             near, far, share = _between(distance_mm)
-        self._background.set(
-            u_view_matrix=view_matrix,
-            u_projection=projection,
-            u_panorama=self._panorama(near),
-            u_farther_panorama=self._panorama(far),
-            u_farther_share=share,
-        )
+        values = {
+            "u_view_matrix": view_matrix,
+            "u_projection": projection,
+            "u_panorama": self._panorama(near),
+            "u_farther_panorama": self._panorama(far),
+            "u_farther_share": share,
+        }
         self.gl.depth_func = "<="
-        self._background_screen.render(moderngl.TRIANGLES, vertices=3)
+        if gaps is not None:
+            gaps.draw(self._gaps, z=1.0, u_view=rectangle, **values)
+        else:
+            self._background.set(**values)
+            self._background_screen.render(moderngl.TRIANGLES, vertices=3)
         self.gl.depth_func = "<"
 
     def _draw_cube(self, size: int) -> moderngl.TextureCube:

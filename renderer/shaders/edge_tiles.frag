@@ -1,7 +1,7 @@
 // Provides: which tiles of a picture may have edges, four to a texel (lower left, lower right, upper
 // left, upper right), from what was drawn with one sample per pixel: where the picture bends or
-// falls in depth, or its marks change. It reads every other pixel of every other row: an edge is
-// longer than that. TILE_PX is a tile's width.
+// falls in depth, or its marks change. A tile without them where nothing was drawn is OPEN. It reads
+// every other pixel of every other row: an edge is longer than that. TILE_PX is a tile's width.
 
 uniform sampler2D u_radiance;   // its alpha tells marks
 uniform sampler2D u_depth;
@@ -14,6 +14,7 @@ out vec4 o_found;
 // In pixels of depth, over two pixels to either side. find_edges.frag asks for a fall of 5 within a
 // pixel; planes fall evenly, so a bend tells edges from slopes.
 const float BEND_PX = 3.0, FALL_PX = 20.0;
+const float OPEN = 0.5;
 
 struct Row {
     float before, after;
@@ -49,23 +50,26 @@ vec4 excess(vec4 here, vec4 left, vec4 right, vec4 below, vec4 above) {
     return max(bend - BEND_PX * pixel, fall - FALL_PX * pixel);
 }
 
+float largest(vec4 v) { return max(max(v.x, v.y), max(v.z, v.w)); }
+
 void main() {
     ivec2 block = ivec2(gl_FragCoord.xy) - ivec2(u_first_column, 0);
     ivec2 first = u_view.xy + 2 * TILE_PX * block;
     Row below = depths(-2, first), here = depths(0, first), mark = marks(0, first);
-    vec4 most = vec4(0.0);
+    vec4 most = vec4(0.0), farthest = vec4(0.0);
     for (int row = 2; row <= 2 * TILE_PX; row += 2) {
         Row above = depths(row, first), next = marks(row, first);
         vec4 a = excess(here.a, vec4(here.before, here.a.xyz), vec4(here.a.yzw, here.b.x), below.a, above.a);
         vec4 b = excess(here.b, vec4(here.a.w, here.b.xyz), vec4(here.b.yzw, here.after), below.b, above.b);
         a = max(a, max(abs(mark.a - next.a), abs(mark.a - vec4(mark.a.yzw, mark.b.x))));
         b = max(b, max(abs(mark.b - next.b), abs(mark.b - vec4(mark.b.yzw, mark.after))));
-        vec2 here_most = vec2(max(max(a.x, a.y), max(a.z, a.w)), max(max(b.x, b.y), max(b.z, b.w)));
+        vec2 here_most = vec2(largest(a), largest(b)), far = vec2(largest(here.a), largest(here.b));
         // The row belongs to the lower tiles or to the upper ones.
         most = max(most, row <= TILE_PX ? vec4(here_most, 0.0, 0.0) : vec4(0.0, 0.0, here_most));
+        farthest = max(farthest, row <= TILE_PX ? vec4(far, 0.0, 0.0) : vec4(0.0, 0.0, far));
         below = here;
         here = above;
         mark = next;
     }
-    o_found = vec4(greaterThan(most, vec4(0.0)));
+    o_found = max(vec4(greaterThan(most, vec4(0.0))), OPEN * vec4(greaterThanEqual(farthest, vec4(1.0))));
 }

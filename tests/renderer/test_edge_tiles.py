@@ -39,7 +39,7 @@ class Stage:
     def masks(self) -> list[npt.NDArray[np.bool_]]:
         z_mm = self.z_mm - CAMERA_MM[2]
         lens = np.asarray(VIEWS[0].projection, float)
-        depth = 0.5 - 0.5 * (lens[2, 2] * z_mm + lens[2, 3]) / z_mm
+        depth = np.minimum(0.5 - 0.5 * (lens[2, 2] * z_mm + lens[2, 3]) / z_mm, 1.0)
         self.depth.write(depth.astype(np.float32).tobytes())
         colours = np.repeat((1.0 + self.mark)[..., None], 4, axis=2).astype(np.float32)
         self.radiance.write(colours.tobytes())
@@ -70,6 +70,29 @@ def test_one_view_does_not_end_at_the_next(gl: moderngl.Context) -> None:
     stage.z_mm[:, 104:] = -300.0
     stage.mark[:, 104:] = 1.0
     assert not np.any(stage.masks())
+
+
+def test_what_nothing_covers_lies_in_gaps_and_what_is_covered_does_not(
+    gl: moderngl.Context,
+) -> None:
+    stage = Stage(gl)
+    stage.z_mm[:, :30] = stage.z_mm[60:90, 104:150] = -1e9  # the far plane and beyond
+    stage.masks()
+    tiles = stage.finder.find(VIEWS)
+    for each, view in zip(tiles, VIEWS, strict=True):
+        x, y, width, height = view.rectangle
+        target = gl.framebuffer([gl.texture(SIZE, 1)])
+        target.use()
+        target.clear()
+        gl.enable_only(moderngl.NOTHING)
+        assert each.gaps is not None
+        each.gaps.draw(build_program(gl, "boxes.vert", fragment="mark.frag"), u_mark=1.0)
+        pixels = np.frombuffer(target.read(components=1, alignment=1), np.uint8)
+        drawn = pixels.reshape(SIZE[::-1])[y : y + height, x : x + width] > 0
+        is_open = stage.z_mm[y : y + height, x : x + width] < 0.0
+        assert drawn[is_open].all()
+        reach = np.array([is_open.any(axis=1).sum(), is_open.any(axis=0).sum()]) + 2 * TILE_PX
+        assert 0 < drawn.sum() <= reach.prod()
 
 
 def test_runs_cover_a_mask_within_its_view() -> None:
