@@ -15,11 +15,11 @@ import numpy.typing as npt
 import pygltflib as gltf
 
 from renderer.clip import ClipSpec
+from renderer.colour import linear_to_srgb
 from renderer.detail import Detail
 from renderer.exchange.gltf_buffer import GltfBuffer
 from renderer.eye.anatomy import CORNEA_IOR, IRIS_DEPTH_MM
 from renderer.eye.sclera import sclera_maps
-from renderer.iris.pigment import linear_to_srgb
 from renderer.iris.source import iris_of
 
 EXTENSIONS: Final = (

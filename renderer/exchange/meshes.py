@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from renderer.iris.pigment import linear_to_srgb
+from renderer.colour import linear_to_srgb
 from renderer.manifest import write_atomically
 
 Floats = npt.NDArray[np.float64]

@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.iris.pigment import linear_to_srgb
+from renderer.colour import linear_to_srgb
 
 Map = npt.NDArray[Any]
 

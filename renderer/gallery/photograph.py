@@ -13,10 +13,10 @@ import numpy as np
 from PIL import Image
 
 from renderer.camera import LIMBUS_Z_MM, camera_radius_mm
+from renderer.colour import linear_to_srgb
 from renderer.gallery.shots import Captioned, Shot, Take, left_only
 from renderer.gallery.strips import Strip
 from renderer.iris.maps import iris_maps
-from renderer.iris.pigment import linear_to_srgb
 from renderer.picture import Pixels
 from renderer.textures.noise import Field
 from renderer.unrefraction.photograph import read_photograph

@@ -10,7 +10,8 @@ import numpy as np
 
 from renderer.head.brows import grow_brow
 from renderer.head.face_mesh import FaceMesh
-from renderer.head.hair import grow_hair, hair_cap
+from renderer.head.hair import grow_hair
+from renderer.head.hair_cap import hair_cap
 from renderer.head.lashes import grow_lashes
 from renderer.head.patch_space import to_world
 from renderer.head.strands import StrandMesh

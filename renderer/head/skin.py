@@ -14,7 +14,7 @@ from renderer.body.makehuman import Floats
 from renderer.camera import eye_centre_mm
 from renderer.head.brows import BROW_COLOUR, stubble
 from renderer.head.hair import COLOUR as HAIR_COLOUR
-from renderer.head.hair import inside_hairline
+from renderer.head.hair_cap import inside_hairline
 from renderer.head.lid_layout import AROUND_MM
 from renderer.head.skin_part import SkinPart
 from renderer.head.unrolling import unroll_mm

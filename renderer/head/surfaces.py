@@ -15,7 +15,7 @@ from renderer.head.clothing import COLOUR as WOOL_COLOUR
 from renderer.head.clothing import sweater
 from renderer.head.face_mesh import FaceMesh, face_mesh
 from renderer.head.hair import COLOUR as HAIR_COLOUR
-from renderer.head.hair import hair_cap
+from renderer.head.hair_cap import hair_cap
 from renderer.head.lid_layout import ACROSS_MM, AROUND_MM, lid_coordinates
 from renderer.head.skin import SCALP, detail_coordinates, paint
 from renderer.head.skin_part import SkinPart

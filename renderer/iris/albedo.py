@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from renderer.colour import srgb_to_linear
 from renderer.iris.angles import closed_noise
 from renderer.iris.layout import IRIS_RADIUS_MM, Array, IrisLayout, Spots
-from renderer.iris.pigment import IPE_ALBEDO, RUFF, Family, srgb_to_linear
+from renderer.iris.pigment import IPE_ALBEDO, RUFF, Family
 from renderer.iris.plane import HALF_SIZE_MM, Plane, blur
 from renderer.iris.relief import Relief
 from renderer.textures.noise import Field

@@ -11,9 +11,10 @@ from typing import Final
 
 import numpy as np
 
+from renderer.colour import luminance, srgb_to_linear
 from renderer.eye.subsurface import Tissue
 from renderer.iris.layout import IRIS_RADIUS_MM
-from renderer.iris.pigment import Family, family, luminance, srgb_to_linear
+from renderer.iris.pigment import Family, family
 from renderer.iris.plane import Plane, blur
 from renderer.iris.relief import Relief
 from renderer.textures.noise import Field

@@ -190,25 +190,3 @@ def family(colour: str) -> Family:
     if colour not in FAMILIES:
         raise ValueError(f'iris colour: unknown "{colour}"; choose one of {", ".join(FAMILIES)}')
     return FAMILIES[colour]
-
-
-def srgb_to_linear(values: npt.ArrayLike) -> Array:
-    """Decode sRGB values from 0 to 255 to linear 0 to 1 (IEC 61966-2-1)."""
-    v = np.asarray(values, np.float64) / 255.0
-    return np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4).astype(np.float32)
-
-
-def linear_to_srgb(values: npt.ArrayLike) -> Array:
-    """Encode linear 0 to 1 as sRGB 0 to 1 (IEC 61966-2-1), clipped."""
-    v = np.clip(np.asarray(values, np.float32), 0.0, 1.0)
-    return np.where(v <= 0.0031308, v * 12.92, 1.055 * v ** (1 / 2.4) - 0.055).astype(np.float32)
-
-
-def luminance(rgb: Array) -> Array:
-    """Return Rec. 709 luminance of linear colours (..., 3)."""
-    y: Array = (
-        np.float32(0.2126) * rgb[..., 0]
-        + np.float32(0.7152) * rgb[..., 1]
-        + np.float32(0.0722) * rgb[..., 2]
-    )
-    return y

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import ExifTags, Image, UnidentifiedImageError
 
+from renderer.colour import decode_srgb
 from renderer.unrefraction.decoding import Encoded, decoded
 from renderer.unrefraction.refusal import PhotographError
 
@@ -44,12 +45,6 @@ class Photograph:
         part = self.pixels[top:bottom, left:right]
         values = np.arange(np.iinfo(part.dtype).max + 1) / np.iinfo(part.dtype).max
         return decode_srgb(values)[part]
-
-
-def decode_srgb(encoded: npt.NDArray[np.float64]) -> Picture:
-    """Return linear light for sRGB values (IEC 61966-2-1)."""
-    curve = ((encoded + 0.055) / 1.055) ** 2.4
-    return np.where(encoded <= 0.04045, encoded / 12.92, curve).astype(np.float32)
 
 
 def read_photograph(path: Path, *, focal_mm: float | None = None) -> Photograph:

@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from renderer.camera import eye_centre_mm, look_at, perspective
 from renderer.clip import ClipSpec
+from renderer.colour import linear_to_srgb
 from renderer.eye.anatomy import LIMBUS_Z_MM
 from renderer.eye.calibration import open_lids
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import gaze_rotation
-from renderer.iris.pigment import linear_to_srgb
 from renderer.light import Light, Sky
 
 Array = npt.NDArray[np.float64]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageDraw
 
-from renderer.iris.pigment import linear_to_srgb
+from renderer.colour import linear_to_srgb
 from renderer.unrefraction.recovery import Recovery
 
 Pixels = npt.NDArray[np.uint8]

@@ -13,9 +13,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from renderer.colour import luminance
 from renderer.eye.subsurface import Tissue, henyey_greenstein, subsurface_gain
 from renderer.iris.maps import IRIS_RADIUS_MM, PUPIL_RADIUS_MM
-from renderer.iris.pigment import luminance
 from renderer.iris.plane import blur, enlarge
 from renderer.textures.sizes import shrink, smoothstep
 

@@ -15,13 +15,13 @@ from PIL import Image
 
 from renderer.camera import iris_px, views
 from renderer.clip import ClipSpec
+from renderer.colour import linear_to_srgb
 from renderer.detail import Detail
 from renderer.exchange.camera_file import cameras, project
 from renderer.exchange.environment_file import lat_long_of
 from renderer.exchange.exr import read_exr, write_exr
 from renderer.exchange.scene_files import write_scene
 from renderer.frame import FrameRenderer
-from renderer.iris.pigment import linear_to_srgb
 from renderer.iris.source import iris_of
 from renderer.park.cube_faces import FACE_AXES
 from renderer.park.cube_target import CubeTarget

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from renderer.head.face_mesh import face_mesh
-from renderer.head.hair import LAYERS, HairCap, grow_hair, hair_cap, inside_hairline
+from renderer.head.hair import LAYERS, grow_hair
+from renderer.head.hair_cap import HairCap, hair_cap, inside_hairline
 from renderer.head.strand_group import Strands
 
 

@@ -16,7 +16,8 @@ from renderer.head.cells import sort_into_cells
 from renderer.head.character import figure
 from renderer.head.clothing import sweater
 from renderer.head.face_mesh import face_mesh
-from renderer.head.hair import grow_hair, hair_cap, inside_hairline
+from renderer.head.hair import grow_hair
+from renderer.head.hair_cap import hair_cap, inside_hairline
 from renderer.head.head import Head
 from renderer.head.lid_outline import OUTLINE_MM
 from renderer.head.patch_space import to_patch

@@ -16,8 +16,9 @@ import pytest
 from scipy import ndimage
 
 from renderer.clip import IRIS_COLOURS
+from renderer.colour import srgb_to_linear
 from renderer.iris import maps as iris
-from renderer.iris.pigment import FAMILIES, srgb_to_linear
+from renderer.iris.pigment import FAMILIES
 from renderer.iris.statistics import to_lab
 
 SIZE_PX = 512

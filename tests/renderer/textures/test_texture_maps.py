@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer.iris.pigment import linear_to_srgb, srgb_to_linear
+from renderer.colour import linear_to_srgb, srgb_to_linear
 from renderer.textures.sizes import (
     check_size,
     normals_from_height,

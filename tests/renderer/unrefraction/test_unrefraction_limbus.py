@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from renderer.clip import ClipSpec
+from renderer.colour import decode_srgb
 from renderer.detail import Detail
 from renderer.eye.anatomy import LIMBUS_WIDTH_MM
 from renderer.iris.maps import PUPIL_RADIUS_MM
@@ -19,7 +20,6 @@ from renderer.unrefraction.edges import LIMBUS_LEVEL, edge_points
 from renderer.unrefraction.light import lift_veils
 from renderer.unrefraction.limbus import EDGE_MM, Limbus, half_way_mm, mean_edge_mm
 from renderer.unrefraction.limbus_fit import SCLERA, SECTORS, find_limbus
-from renderer.unrefraction.photograph import decode_srgb
 from renderer.unrefraction.portrait import developed, portrait
 from renderer.unrefraction.pose import Pose
 from renderer.unrefraction.texels import Texels, place_texels, sample

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from PIL import ExifTags, Image, ImageCms
 
-from renderer.unrefraction.photograph import decode_srgb, read_photograph
+from renderer.colour import decode_srgb
+from renderer.unrefraction.photograph import read_photograph
 from renderer.unrefraction.refusal import PhotographError
 
 
