@@ -11,6 +11,7 @@ import io
 import textwrap
 from collections.abc import Sequence
 from typing import Any, Final, Literal
+from zlib import crc32
 
 import matplotlib as mpl
 import numpy as np
@@ -60,7 +61,9 @@ def lod_marker(lod: str, lods: Sequence[str]) -> str:
 
 
 def _place(lod: str, lods: Sequence[str]) -> int:
-    return [name for name in lods if name not in LOD_COLOURS].index(lod)
+    own = [name for name in lods if name not in LOD_COLOURS]
+    # One that was compared and never rated is in no order: its place is its name's.
+    return own.index(lod) if lod in own else len(own) + crc32(lod.encode())
 
 
 def scale_colours(steps: int) -> list[str]:

@@ -183,4 +183,7 @@ def test_equal_values_lie_side_by_side_around_zero() -> None:
 def test_named_lods_have_colours_of_their_own() -> None:
     lods = ["low", "ultra", "ultra-no-caustics", "ultra-no-sclera"]
     assert len({lod_colour(lod, lods) for lod in lods}) == 4
+    assert lod_colour("compared-and-never-rated", lods) not in {
+        lod_colour(lod, lods[:2]) for lod in lods[:2]
+    }
     assert len(set(scale_colours(7))) == 7

@@ -78,6 +78,10 @@ CASES: dict[str, tuple[list[Row], pd.DataFrame | None]] = {
     "one cell missing": ([r for r in table(RISING) if r[1:3] != ("far", "low")], None),
     "a cell without a rating": ([(*r[:4], "" if r[1:3] == ("far", "low") else r[4])
                                  for r in table(RISING)], None),
+    "comparisons of LoDs that nobody rated": (
+        table(RISING),
+        compared(1, "yes").replace({"low": "matt", "ultra": "gloss"}),
+    ),
     "duplicate rows": (table(RISING) * 2, pd.concat([compared(1, "yes")] * 2)),
     "people who share no LoD": (
         [r for r in table(RISING) if (r[2] == "low") == (r[0] in ("p0", "p1", "p2"))],
