@@ -23,11 +23,11 @@ from renderer.crowd.shadows import CrowdShadows
 from renderer.crowd.shares import light_shares
 from renderer.crowd.skinned import SkinnedFigures, eyes_last, joined_triangles
 from renderer.crowd.stage import STAGE, Member, members
+from renderer.frame.outlines import BYSTANDER, Outlines
+from renderer.gl.program import build_program
 from renderer.light import Light
 from renderer.lod.choice import LodPolicy
 from renderer.lod.policy import default_policy
-from renderer.outlines import BYSTANDER, Outlines
-from renderer.program import build_program
 
 Floats = npt.NDArray[np.float64]
 StaticCube = Callable[[int], moderngl.TextureCube]

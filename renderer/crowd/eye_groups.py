@@ -21,9 +21,9 @@ from renderer.eye.geometry import Mesh, eye_mesh
 from renderer.eye.maps import iris_values, sclera_values
 from renderer.eye.model import APPARENT_GAIN, eye_constants
 from renderer.eye.silhouette import vertex_array
+from renderer.frame.outlines import EYE
+from renderer.gl.program import Program, build_program
 from renderer.iris.source import Iris
-from renderer.outlines import EYE
-from renderer.program import Program, build_program
 
 # Six irises for everybody; half a second each to make at this size.
 IRIS_PX: Final = 512

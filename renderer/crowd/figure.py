@@ -17,10 +17,11 @@ from renderer.body.makehuman import Floats, Indices, base_mesh
 from renderer.body.normals import vertex_normals
 from renderer.body.phenotype import phenotype, target_offsets
 from renderer.body.rig import Rig, fit_rig
-from renderer.crowd.dress import PARTS, Piece, pieces
+from renderer.crowd.dress import pieces
 from renderer.crowd.face_parts import FacePart, brows, eyes
 from renderer.crowd.hems import hem
 from renderer.crowd.people import Person
+from renderer.crowd.pieces import PARTS, Piece
 
 BONES: Final = (
     "Root", "pelvis", "spine_01", "spine_02", "spine_03", "neck_01", "head",

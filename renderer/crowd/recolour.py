@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from renderer.crowd.dress import PARTS
 from renderer.crowd.face_parts import brow_colour
 from renderer.crowd.figure import Body
 from renderer.crowd.people import Person
+from renderer.crowd.pieces import PARTS
 
 
 def recoloured(body: Body, wearer: Person, *, person: Person) -> Body:

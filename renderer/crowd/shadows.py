@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from renderer.crowd.skinned import SkinnedFigures, joined_triangles
 from renderer.crowd.stage import GROUND_MM
+from renderer.gl.program import build_program
 from renderer.light import Sky
-from renderer.program import build_program
 
 
 class CrowdShadows:

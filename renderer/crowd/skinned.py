@@ -8,10 +8,10 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.crowd.dress import PARTS
 from renderer.crowd.figure import Body
 from renderer.crowd.figures import Figure
-from renderer.program import assemble, plain_uniform
+from renderer.crowd.pieces import PARTS
+from renderer.gl.program import assemble, plain_uniform
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]

@@ -14,8 +14,8 @@ import numpy.typing as npt
 from scipy import ndimage
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.crowd.dress import PARTS
 from renderer.crowd.figure import Body
+from renderer.crowd.pieces import PARTS
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.lids import LidRims
 

@@ -23,12 +23,12 @@ from renderer.crowd.eyes import PAINTED_PX
 from renderer.crowd.figures import Figure, Troupe
 from renderer.crowd.formation import CAMERA_MM, formation, group_view
 from renderer.crowd.gaze import CrowdGaze
+from renderer.crowd.group import GroupRenderer
 from renderer.crowd.sockets import AWAKE_MM, sockets
 from renderer.crowd.stage import members
 from renderer.detail import STANDARD_LODS, Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.caustics import caustic_map
-from renderer.group import GroupRenderer
 from renderer.lod.choice import LodPolicy, LodStep
 from renderer.lod.policy import default_policy
 from renderer.scene import Scene

@@ -9,9 +9,9 @@ from scipy.spatial import cKDTree
 from renderer.body.makehuman import Floats, Indices
 from renderer.crowd.bodies import cached_body
 from renderer.crowd.cast import CAST, TEMPLATES
-from renderer.crowd.dress import PARTS
 from renderer.crowd.figure import Body
 from renderer.crowd.hems import TURNED_DOWN_MM, TURNED_IN_MM, hem, open_edges
+from renderer.crowd.pieces import PARTS
 
 NAMES = ("left", "elder", "right")
 
@@ -75,6 +75,15 @@ def test_short_hair_begins_on_the_skin(body: Body) -> None:
     hem_rows = heights[front & (heights < 0.0)]
     assert len(hem_rows) > 0.3 * front.sum()  # no hair hangs over the forehead as spikes
     assert np.median(hem_rows) < -5.0
+
+
+def test_long_hair_ends_level_at_the_collar() -> None:
+    body = cached_body(TEMPLATES["right"])
+    y = body.positions_mm[:, 1]
+    hair, collar = np.unique(part(body, "hair")), np.unique(part(body, "top"))
+    collar_mm, end_mm = y[collar].max(), y[hair].min()
+    assert collar_mm - 40.0 < end_mm < collar_mm + 20.0  # it pierces no shoulder
+    assert ((y[hair] < end_mm + 12.0).sum()) > 12  # a straight cut, no spikes
 
 
 def test_nobody_wears_the_colour_of_skin() -> None:
