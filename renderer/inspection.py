@@ -17,11 +17,11 @@ import numpy.typing as npt
 
 from renderer.camera import IRIS_PX, View, iris_px, look_at, perspective, views
 from renderer.clip import ClipSpec
-from renderer.context import is_software
 from renderer.detail import LEVELS, Detail
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
+from renderer.frame.picture import Pixels
+from renderer.gl.context import is_software
 from renderer.lod.path import Places, Shares, places_of_view, shares_of
-from renderer.picture import Pixels
 from renderer.studio import Studio
 
 KEPT_RENDERERS: Final = 4  # the last ones stay, so that a key goes there and back quickly

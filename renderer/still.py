@@ -8,12 +8,12 @@ from pathlib import Path
 from PIL import Image
 
 from renderer.clip import ClipSpec
-from renderer.context import create_context, identify
+from renderer.crowd.group import GroupRenderer
 from renderer.exchange.exr import Attribute, write_exr
-from renderer.frame import FrameRenderer
-from renderer.group import GroupRenderer
+from renderer.frame.frame import FrameRenderer
+from renderer.frame.picture import EXPOSURE
+from renderer.gl.context import create_context, identify
 from renderer.lod.choice import LodPolicy
-from renderer.picture import EXPOSURE
 from renderer.sources import code_version
 
 
@@ -31,8 +31,8 @@ def write_still(
     """Render one frame into a file; see ``write_frame``.
 
     ``wireframe`` draws the eyes' meshes as lines, which shows their tessellation. ``view`` "crowd"
-    shows the other characters in rows (``renderer.group``) instead of the main one; ``policy``
-    then chooses their eyes' LoDs.
+    shows the other characters in rows (``renderer.crowd.group``) instead of the main one;
+    ``policy`` then chooses their eyes' LoDs.
     """
     gl = create_context()
     try:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from renderer.clip import ClipSpec
-from renderer.context import create_context, identify
-from renderer.frame import Frame, FrameRenderer
-from renderer.group import GroupRenderer
+from renderer.crowd.group import GroupRenderer
+from renderer.frame.frame import Frame, FrameRenderer
+from renderer.frame.view_passes import PASSES
+from renderer.gl.context import create_context, identify
 from renderer.scene import Scene, scene_key
-from renderer.view_passes import PASSES
 
 
 class Studio:

@@ -47,7 +47,7 @@ def measured(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     monkeypatch.setattr(report, "write_report", lambda _found, folder: folder / "report.html")
     monkeypatch.setattr(tracer, "check_installed", lambda: None)
     monkeypatch.setattr(tracer, "path_tracer", lambda _variant: None)
-    monkeypatch.setattr("renderer.context.create_context", Context)
+    monkeypatch.setattr("renderer.gl.context.create_context", Context)
     return asked
 
 

@@ -13,8 +13,8 @@ import pytest
 from PIL import Image
 
 from renderer.clip import ClipSpec
-from renderer.context import create_context
 from renderer.detail import Detail
+from renderer.gl.context import create_context
 from renderer.unrefraction.portrait import developed, portrait
 from study.cli import main
 from study.commands.eye_options import iris

@@ -15,8 +15,8 @@ from typing import Final, Protocol
 
 import moderngl
 
-from renderer.context import is_software
-from renderer.frame import Frame
+from renderer.frame.frame import Frame
+from renderer.gl.context import is_software
 
 WALL, QUERY = "wall time", "timer queries"
 WARM_UP: Final = 1  # the first frame builds the eyes and compiles their shaders

@@ -17,7 +17,7 @@ from renderer.clip import CUBE_SIZES
 from renderer.crowd.cube import CrowdCube
 from renderer.detail import Detail
 from renderer.eye.cube_size import cube_px
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 
 PART: Final = "cubes"
 SIZES_PX: Final = (128, 256, 512, 1024, 2048)

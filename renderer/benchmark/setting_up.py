@@ -49,13 +49,13 @@ def set_up(lod: str, size: tuple[int, int]) -> dict[str, dict[str, float]]:
     Two equal eyes, as in a clip.
     """
     stages = Stages()
-    frame = stages.time("modules", lambda: importlib.import_module("renderer.frame"))
+    frame = stages.time("modules", lambda: importlib.import_module("renderer.frame.frame"))
     # Imported now: importing is the first stage.
     from renderer import scene as scenes
     from renderer.benchmark.gl_memory import gl_bytes, resident_bytes
     from renderer.clip import ClipSpec
-    from renderer.context import create_context
     from renderer.detail import Detail
+    from renderer.gl.context import create_context
 
     detail = Detail.uniform(lod)
     spec = ClipSpec(left=detail, right=detail, width=size[0], height=size[1])

@@ -14,7 +14,7 @@ from renderer.benchmark.result import About, Bench, Cost
 from renderer.camera import iris_px
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.sources import code_version
 from renderer.studio import Studio
 

@@ -24,8 +24,8 @@ from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, STANDARD_LODS, Detail
 from renderer.eye.model import eye_constants
 from renderer.eye.silhouette import detail_mesh, hull_mesh, vertex_array
-from renderer.frame import FrameRenderer
-from renderer.program import build_program
+from renderer.frame.frame import FrameRenderer
+from renderer.gl.program import build_program
 
 PART: Final = "work"
 ULTRA: Final = Detail.uniform("ultra")

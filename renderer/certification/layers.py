@@ -23,8 +23,8 @@ from renderer.eye.caustics import MAP_EDGE_MM
 from renderer.eye.model import eye_constants
 from renderer.eye.subsurface import Path, midpoint_sum
 from renderer.eye.textures import float_texture
+from renderer.gl.program import Program, build_program
 from renderer.iris.maps import iris_maps, scattering
-from renderer.program import Program, build_program
 
 Array = npt.NDArray[np.float64]
 

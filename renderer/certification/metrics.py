@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.encoding.flip import PIXELS_PER_DEGREE
-from renderer.picture import EXPOSURE
+from renderer.frame.picture import EXPOSURE
 
 Picture = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]

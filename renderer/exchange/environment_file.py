@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.program import build_program
+from renderer.gl.program import build_program
 
 WIDTH_PX: Final = 2048
 CUBE_PX: Final = 512  # a quarter of the width: texels of both are equally large at the horizon

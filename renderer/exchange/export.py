@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from renderer.clip import ClipSpec
-from renderer.context import create_context
 from renderer.exchange.gltf import write_eyes
 from renderer.exchange.scene_files import write_scene
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
+from renderer.gl.context import create_context
 
 
 def export_scene(

@@ -12,7 +12,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from renderer.context import identify
 from renderer.detail import Detail
 from renderer.exchange.camera_file import cameras
 from renderer.exchange.drawn import crowd_meshes, hair_meshes, head_meshes
@@ -24,10 +23,11 @@ from renderer.exchange.meshes import Mesh, write_ply
 from renderer.exchange.readme import README
 from renderer.exchange.textures import write_maps
 from renderer.eye.model import EyeModel
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
+from renderer.frame.picture import EXPOSURE
+from renderer.gl.context import identify
 from renderer.iris.source import iris_of
 from renderer.manifest import write_atomically
-from renderer.picture import EXPOSURE
 from renderer.sources import code_version
 
 INDEX: Final = "scene.json"

@@ -19,7 +19,7 @@ from renderer.eye.anatomy import IRIS_Z_MM
 from renderer.eye.caustics import MAP_EDGE_MM
 from renderer.eye.chamber import chamber_irradiance
 from renderer.eye.lids import LidRims
-from renderer.program import Program
+from renderer.gl.program import Program
 from renderer.spherical_harmonics import ambient_uniforms
 
 Array = npt.NDArray[np.float64]

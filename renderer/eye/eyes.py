@@ -17,13 +17,13 @@ import numpy as np
 from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.edge_tiles import EdgeTiles
 from renderer.eye.cube_size import cube_px
 from renderer.eye.kept import Kept
 from renderer.eye.lids import LidRims
 from renderer.eye.model import EyeModel, build_model
 from renderer.eye.morph import Morph
 from renderer.eye.silhouette import common_box
+from renderer.frame.edge_tiles import EdgeTiles
 from renderer.light import Light
 
 Shares = tuple[tuple[Detail, float], ...]

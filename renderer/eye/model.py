@@ -39,9 +39,9 @@ from renderer.eye.sunlight import (
     shade_map,
     sunlight_values,
 )
+from renderer.gl.program import Program, build_program, detail_constants
 from renderer.iris.source import iris_of
 from renderer.light import Light
-from renderer.program import Program, build_program, detail_constants
 from renderer.spherical_harmonics import terms_irradiance
 
 Array = npt.NDArray[np.float64]

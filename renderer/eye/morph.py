@@ -17,8 +17,8 @@ from renderer.detail import Detail
 from renderer.eye.geometry import Mesh
 from renderer.eye.optics import unit
 from renderer.eye.silhouette import Shaded, detail_mesh
-from renderer.outlines import EYE
-from renderer.program import build_program
+from renderer.frame.outlines import EYE
+from renderer.gl.program import build_program
 
 Array = npt.NDArray[np.float64]
 

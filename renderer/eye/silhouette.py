@@ -10,14 +10,14 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.bare_mesh import BareMesh
 from renderer.detail import Detail
-from renderer.edge_tiles import EdgeTiles
 from renderer.eye.anatomy import APEX_MM, GLOBE_RADIUS_MM
 from renderer.eye.geometry import Mesh, eye_mesh
 from renderer.eye.lids import LidRims
-from renderer.outlines import EYE
-from renderer.program import Program, build_program
+from renderer.frame.bare_mesh import BareMesh
+from renderer.frame.edge_tiles import EdgeTiles
+from renderer.frame.outlines import EYE
+from renderer.gl.program import Program, build_program
 
 Array = npt.NDArray[np.float64]
 Box = tuple[int, int, int, int]

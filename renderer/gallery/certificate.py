@@ -9,9 +9,9 @@ from typing import Final
 import numpy as np
 from PIL import Image
 
+from renderer.frame.picture import Pixels
 from renderer.gallery.shots import Captioned, Take
 from renderer.gallery.strips import Strip
-from renderer.picture import Pixels
 
 FIGURES: Final = "certification.json"
 

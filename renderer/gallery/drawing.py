@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from renderer.frame.picture import Pixels
 from renderer.gallery.shots import Captioned, fitted
-from renderer.picture import Pixels
 
 TITLE_PX: Final = 44
 CAPTION_PX: Final = 30

@@ -14,10 +14,10 @@ from PIL import Image
 
 from renderer.camera import LIMBUS_Z_MM, camera_radius_mm
 from renderer.colour import linear_to_srgb
+from renderer.frame.picture import Pixels
 from renderer.gallery.shots import Captioned, Shot, Take, left_only
 from renderer.gallery.strips import Strip
 from renderer.iris.maps import iris_maps
-from renderer.picture import Pixels
 from renderer.textures.noise import Field
 from renderer.unrefraction.photograph import read_photograph
 from renderer.unrefraction.recovery import Recovery, recover_iris

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from renderer.frame.view_passes import PASSES
 from renderer.gallery.shots import (
     BOTH_EYES,
     LEFT_EYE,
@@ -14,7 +15,6 @@ from renderer.gallery.shots import (
     spec_of,
 )
 from renderer.gallery.strips import Strip, of_shots
-from renderer.view_passes import PASSES
 
 SUN_AZIMUTHS_DEG: Final = (-60, -30, 0, 30, 60)
 SUN_ELEVATIONS_DEG: Final = (5, 15, 35, 50, 65)

@@ -15,9 +15,9 @@ from PIL import Image
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.picture import Pixels
+from renderer.frame.picture import Pixels
+from renderer.frame.view_passes import PASSES
 from renderer.studio import Studio
-from renderer.view_passes import PASSES
 
 Crop = tuple[float, float, float, float]
 

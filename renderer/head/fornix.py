@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from renderer.body.makehuman import Floats
 from renderer.camera import eye_centre_mm
+from renderer.gl.program import build_program
 from renderer.light import Sky
-from renderer.program import build_program
 from renderer.spherical_harmonics import sh_basis
 
 RADIUS_MM: Final = 12.6  # a little more than the globe's

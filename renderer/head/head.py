@@ -12,12 +12,14 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.bare_mesh import BareMesh
 from renderer.body.makehuman import Floats
 from renderer.camera import Matrix, eye_centre_mm
 from renderer.clip import ClipSpec
-from renderer.edge_tiles import EdgeTiles
 from renderer.eye.lids import LidRims
+from renderer.frame.bare_mesh import BareMesh
+from renderer.frame.edge_tiles import EdgeTiles
+from renderer.frame.outlines import CLOTH, HAIR, Outlines
+from renderer.gl.program import build_program
 from renderer.head.buffers import CellMesh, TilePyramid, joined
 from renderer.head.clothing import knit_tile
 from renderer.head.face_mesh import face_mesh
@@ -31,8 +33,6 @@ from renderer.head.strands import blending, strand_programs
 from renderer.head.surfaces import SKIN_KINDS, cap_surface, cloth_surface, skin_surfaces
 from renderer.head.tears import TearLine
 from renderer.light import Light
-from renderer.outlines import CLOTH, HAIR, Outlines
-from renderer.program import build_program
 
 CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
 KNIT_PX_PER_MM: Final = 60.0  # of the knit's tile; more than it has: wool looks soft, not sharp

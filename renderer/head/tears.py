@@ -16,13 +16,13 @@ import numpy.typing as npt
 from renderer.body.makehuman import Floats, Indices
 from renderer.body.normals import unit, vertex_normals
 from renderer.body.subdivide import triangles_of
+from renderer.gl.program import Program
 from renderer.head.lid_fit import LidPatch
 from renderer.head.lid_pose import LidPose
 from renderer.head.lid_rims import rim, smooth_step
 from renderer.head.lid_shell import on_globe
 from renderer.head.patch_space import to_world
 from renderer.head.strands import PREMULTIPLIED_KEEPING_TARGET, blending
-from renderer.program import Program
 from renderer.textures.noise import noise_1d
 
 # Height on the globe and depth on the margin. Adults' lower meniscus: 0.15 to 0.4 mm high.

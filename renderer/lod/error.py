@@ -15,11 +15,11 @@ from renderer.camera import cropped, views
 from renderer.clip import ClipSpec
 from renderer.detail import STANDARD_LODS, Detail
 from renderer.encoding.fidelity import Rectangle, eye_rectangles
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
+from renderer.frame.picture import Pixels
 from renderer.lod.derivation import LodError, derive_policy
 from renderer.lod.policy import PolicyFile
 from renderer.lod.visibility import JUST_NOTICEABLE, PIXELS_PER_DEGREE, visible_difference
-from renderer.picture import Pixels
 from renderer.sources import code_version
 from renderer.studio import Studio
 

@@ -15,15 +15,15 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.boxes import Box, Boxes
 from renderer.camera import IRIS_PX, radius_of_px
 from renderer.clip import ClipSpec
+from renderer.frame.boxes import Box, Boxes
+from renderer.gl.program import build_program
 from renderer.light import Sky
 from renderer.park.cube_faces import FACE_AXES, read_face
 from renderer.park.cube_lookup import halve
 from renderer.park.cube_target import CubeTarget
 from renderer.park.environments import AMBIENT_PX, Environment, make_environment
-from renderer.program import build_program
 
 SMALLEST_LEVEL_PX: Final = 32
 CHAMBER_FACE_PX: Final = 16  # 5.6 degrees: as fine as the rays that gather light on the iris

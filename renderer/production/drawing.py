@@ -21,7 +21,7 @@ from renderer.encoding.eye_boxes import eye_boxes
 from renderer.production.beside import Beside
 
 if TYPE_CHECKING:
-    from renderer.frame import Frame
+    from renderer.frame.frame import Frame
 
 Progress = Callable[[float], None]
 

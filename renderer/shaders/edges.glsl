@@ -1,5 +1,5 @@
 // Provides: what is known of a pixel's four samples, which nobody has shaded: their depth, and a mark
-// that tells apart things which meet at one depth. Marks: renderer/outlines.py.
+// that tells apart things which meet at one depth. Marks: renderer/frame/outlines.py.
 
 uniform sampler2DMS u_sample_depth;
 uniform sampler2DMS u_sample_mark;

@@ -58,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
     from renderer.certification.plan import IRISES, full_plan, quick_plan
     from renderer.certification.report import write_report
     from renderer.certification.tracer import path_tracer
-    from renderer.context import create_context
+    from renderer.gl.context import create_context
 
     start_s = time.monotonic()
     irises = tuple(_seed_and_colour(wanted) for wanted in options.iris or ())

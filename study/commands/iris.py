@@ -109,8 +109,8 @@ def _write_rest(
     if is_drawn:
         steps.show("drawing the eye")
         from renderer.clip import ClipSpec
-        from renderer.context import create_context
         from renderer.detail import Detail
+        from renderer.gl.context import create_context
         from renderer.unrefraction.portrait import developed, portrait
 
         yaw_deg, pitch_deg = recovery.gaze_deg

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from renderer.clip import ClipSpec
-from renderer.context import create_context
 from renderer.detail import Detail
 from renderer.eye.lids import Curve, LidRims
+from renderer.gl.context import create_context
 from renderer.scene import Scene, build_scene
 
 LID_SHELL_MM: Final = 12.3  # radius on which the inner edge of the rim slides over the globe

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from renderer.clip import ClipSpec
-from renderer.context import identify
 from renderer.crowd.stage import FRONT, STAGE
 from renderer.detail import Detail
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
+from renderer.gl.context import identify
 from renderer.inspection import Inspector, Viewpoint, at_least_as_sharp, on_picture, overhead_view
 from renderer.scene import Scene
 

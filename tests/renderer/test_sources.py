@@ -19,8 +19,9 @@ def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         "iris/__init__.py": "",
         "iris/maps.py": "from renderer.iris import noise\n",
         "iris/noise.py": "def f() -> None:\n    import numpy\n",
-        "eye.py": "from renderer.iris.maps import x\nimport renderer.program\n",
-        "program.py": "",
+        "eye.py": "from renderer.iris.maps import x\nimport renderer.gl.program\n",
+        "gl/__init__.py": "",
+        "gl/program.py": "",
         "shaders/eye.frag": "void main() {}",
     }
     for name, text in files.items():

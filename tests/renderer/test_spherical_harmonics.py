@@ -8,8 +8,8 @@ import moderngl
 import numpy as np
 import pytest
 
+from renderer.gl.program import build_program
 from renderer.park.image import irradiance
-from renderer.program import build_program
 from renderer.spherical_harmonics import ambient_uniforms, irradiance_terms, terms_irradiance
 
 

@@ -13,7 +13,7 @@ from PIL import Image
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.exchange.exr import REC_709, read_attributes, read_exr
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.scene import Scene
 from renderer.sources import code_version
 from renderer.still import write_frame

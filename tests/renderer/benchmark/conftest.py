@@ -11,10 +11,10 @@ import pytest
 from renderer.benchmark.result import About, Bench, Cost, Memory, Stage, Work
 from renderer.benchmark.stand import Stand
 from renderer.clip import ClipSpec
-from renderer.context import identify
+from renderer.crowd.group import GroupRenderer
 from renderer.detail import STANDARD_LODS
-from renderer.frame import FrameRenderer
-from renderer.group import GroupRenderer
+from renderer.frame.frame import FrameRenderer
+from renderer.gl.context import identify
 from renderer.scene import Scene
 
 

@@ -10,7 +10,7 @@ from renderer.benchmark.counting import Tally, counted, tally
 from renderer.clip import ClipSpec
 from renderer.detail import LEVELS, Detail
 from renderer.eye.model import eye_constants
-from renderer.program import build_program
+from renderer.gl.program import build_program
 
 VERTEX = """#version 430 core
 void main() { gl_Position = vec4(ivec2(gl_VertexID & 1, gl_VertexID >> 1) * 4 - 1, 0.0, 1.0); }

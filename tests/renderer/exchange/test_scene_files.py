@@ -21,7 +21,7 @@ from renderer.exchange.camera_file import cameras, project
 from renderer.exchange.environment_file import lat_long_of
 from renderer.exchange.exr import read_exr, write_exr
 from renderer.exchange.scene_files import write_scene
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.iris.source import iris_of
 from renderer.park.cube_faces import FACE_AXES
 from renderer.park.cube_target import CubeTarget

@@ -23,10 +23,10 @@ from renderer.eye.lids import LidRims
 from renderer.eye.micro_relief import micro_relief_tile
 from renderer.eye.sclera import ScleraMaps
 from renderer.eye.subsurface import Tissue
+from renderer.gl.program import Program, build_program
 from renderer.iris.maps import IrisMaps
 from renderer.iris.source import Iris, iris_of
 from renderer.light import Light, Sky
-from renderer.program import Program, build_program
 
 ALBEDO = np.array([0.3, 0.2, 0.1], np.float32)
 TISSUE = Tissue(np.full((4, 3), 3.0), np.full((4, 3), 5.0), np.full(4, 0.3))

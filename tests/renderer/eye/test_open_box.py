@@ -12,7 +12,7 @@ from renderer.detail import Detail
 from renderer.eye import eyes as eyes_module
 from renderer.eye.eyes import Eyes
 from renderer.eye.silhouette import Box, common_box
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.scene import Scene
 
 LOW, HIGH = Detail.uniform("low"), Detail.uniform("high")

@@ -12,7 +12,7 @@ import pytest
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.eyes import Eyes
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.scene import Scene
 
 HIGH = Detail.uniform("high")

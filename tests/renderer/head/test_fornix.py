@@ -9,7 +9,7 @@ from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.head.fornix import REACHED, TISSUE, disc, radiance, wall
 from renderer.light import Sky
 from renderer.scene import Scene

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from renderer.eye.anatomy import GLOBE_RADIUS_MM, shader_constants
 from renderer.eye.lids import LidRims
-from renderer.program import build_program
+from renderer.gl.program import build_program
 from renderer.spherical_harmonics import ambient_uniforms
 
 Map = npt.NDArray[np.float32]

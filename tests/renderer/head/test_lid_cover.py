@@ -9,10 +9,10 @@ import pytest
 from renderer.camera import Matrix, eye_centre_mm, look_at, perspective
 from renderer.eye.geometry import eye_mesh
 from renderer.eye.model import gaze_rotation
+from renderer.gl.program import Program, build_program
 from renderer.head.face_mesh import face_mesh
 from renderer.head.lid_pose import LidPose
 from renderer.head.skin_part import SkinPart
-from renderer.program import Program, build_program
 
 SIZE = (128, 128)
 

@@ -7,13 +7,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from renderer.gl.program import build_program
 from renderer.head.face_mesh import face_mesh
 from renderer.head.lid_fit import fit_lids
 from renderer.head.lid_pose import STRAIGHT, LidPose
 from renderer.head.lid_shell import height_over_globe
 from renderer.head.tears import ACROSS, TearLine, TearStrip, tear_strip
 from renderer.light import Light, Sky
-from renderer.program import build_program
 
 POSES = (STRAIGHT, LidPose(20.0, -25.0), LidPose(-20.0, 15.0, 0.5))
 

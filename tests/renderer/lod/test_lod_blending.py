@@ -16,7 +16,7 @@ from renderer.detail import Detail
 from renderer.encoding.fidelity import eye_rectangles
 from renderer.eye.geometry import eye_mesh
 from renderer.eye.morph import laid_on
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.lod.choice import LodPolicy, LodStep
 from renderer.lod.path import places_of_clip
 from renderer.scene import Scene

@@ -14,7 +14,7 @@ import pytest
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.encoding.fidelity import eye_rectangles
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.lod.derivation import LodError
 from renderer.lod.error import Look, Sight, measure_errors, render_rectangles
 from renderer.lod.policy import DEFAULT_NAME, default_policy

@@ -5,7 +5,7 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
-from renderer.picture import EXPOSURE, Picture
+from renderer.frame.picture import EXPOSURE, Picture
 
 
 def reference(radiance: np.ndarray) -> np.ndarray:

@@ -8,8 +8,8 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer import program
 from renderer.detail import Detail
+from renderer.gl import program
 
 VERTEX = "void main() { gl_Position = vec4(0.0); }\n"
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import moderngl
 
-from renderer.program import Program, build_program
+from renderer.gl.program import Program, build_program
 
 SHARE: Final = 0.07  # of the light; the eye alone scatters 5 to 10 % (Spencer et al. 1995)
 FIRST_PX: Final = 4  # picture pixels per texel of the finest level; each next one doubles it

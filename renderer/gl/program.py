@@ -19,7 +19,7 @@ import numpy as np
 
 from renderer.detail import LEVELS, Detail
 
-SHADERS: Final = Path(__file__).parent / "shaders"
+SHADERS: Final = Path(__file__).parent.parent / "shaders"
 VERSION_LINE: Final = "#version 430 core\n"
 _INCLUDE: Final = re.compile(r'^\s*#include\s+"([^"]+)"\s*$')
 _UNIFORM: Final = re.compile(r"^\s*uniform\s+(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*;", re.MULTILINE)

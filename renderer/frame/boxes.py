@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.program import Program
+from renderer.gl.program import Program
 
 Box = tuple[int, int, int, int]  # x, y, width, height in pixels from the lower left
 

@@ -14,7 +14,7 @@ import pytest
 
 from renderer.clip import DISTANCES, ClipSpec
 from renderer.detail import Detail
-from renderer.frame import FrameRenderer
+from renderer.frame.frame import FrameRenderer
 from renderer.scene import Scene
 
 PAIRINGS: Final = (("medium", "ultra"), ("high", "high"))

@@ -9,12 +9,12 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.bloom import SHARE, Bloom
 from renderer.camera import View
-from renderer.edge_tiles import EdgeFinder, EdgeTiles
-from renderer.edges import Edges
-from renderer.outlines import Outlines
-from renderer.program import build_program
+from renderer.frame.bloom import SHARE, Bloom
+from renderer.frame.edge_tiles import EdgeFinder, EdgeTiles
+from renderer.frame.edges import Edges
+from renderer.frame.outlines import Outlines
+from renderer.gl.program import build_program
 
 EXPOSURE: Final = 0.8  # one fixed exposure for every clip: no auto-exposure, fair pairs
 

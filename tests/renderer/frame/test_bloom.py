@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.bloom import Bloom
+from renderer.frame.bloom import Bloom
 
 
 def glow(

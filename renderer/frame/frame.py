@@ -12,10 +12,10 @@ from renderer.crowd.cube import CrowdCube
 from renderer.eye.cube_size import cube_px
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import EyeModel
+from renderer.frame.picture import Picture, Pixels, Radiance
+from renderer.frame.view_passes import PASSES, ViewPasses
 from renderer.lod.path import Places, details_of, places_of_clip, places_of_view, shares_of
-from renderer.picture import Picture, Pixels, Radiance
 from renderer.scene import Scene, build_scene, scene_key
-from renderer.view_passes import PASSES, ViewPasses
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from typing import Final
 import moderngl
 
 from renderer.camera import CameraUniforms, View
-from renderer.edge_tiles import EdgeTiles
 from renderer.eye.eyes import Eyes
-from renderer.outlines import Outlines
+from renderer.frame.edge_tiles import EdgeTiles
+from renderer.frame.outlines import Outlines
 from renderer.scene import Scene
 
 # What a view is drawn by, in this order: what lets something through lies over what does not.

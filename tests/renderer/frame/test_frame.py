@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 from renderer.clip import ClipSpec
-from renderer.context import identify
 from renderer.detail import EFFECTS, TABLE, Detail
 from renderer.encoding.fidelity import eye_rectangles
-from renderer.frame import Frame, FrameRenderer
+from renderer.frame.frame import Frame, FrameRenderer
+from renderer.gl.context import identify
 from renderer.production.batch import render_clip
 from renderer.scene import Scene
 

@@ -2,7 +2,7 @@
 
 Shading is software GL's cost, and with four samples it pays for hidden ones too. So colours are
 shaded once per pixel, and what is opaque is drawn again into these targets, as bare triangles;
-``renderer.edges`` makes smooth edges of both.
+``renderer.frame.edges`` makes smooth edges of both.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ from typing import Any, Final
 
 import moderngl
 
-from renderer.boxes import Box
-from renderer.edge_tiles import EdgeTiles
-from renderer.program import build_program
+from renderer.frame.boxes import Box
+from renderer.frame.edge_tiles import EdgeTiles
+from renderer.gl.program import build_program
 
 SAMPLES: Final = 4  # llvmpipe's maximum
 # What meets other things at the same depth has a mark; in the picture alpha is one more. Parts of

@@ -7,9 +7,8 @@ from typing import Any, Final
 import moderngl
 import numpy as np
 import numpy.typing as npt
-
-from renderer.edge_tiles import EdgeTiles
-from renderer.program import Program
+from renderer.frame.edge_tiles import EdgeTiles
+from renderer.gl.program import Program
 
 GROUP: Final = 8  # neighbouring triangles that are drawn or left out together
 GRID: Final = 1024  # of the curve along which triangles are neighbours

@@ -12,11 +12,11 @@ import pytest
 from renderer.camera import View, look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.edge_tiles import depth_step
-from renderer.edges import Edges
-from renderer.frame import FrameRenderer
-from renderer.outlines import EYE
-from renderer.picture import EXPOSURE, Picture
+from renderer.frame.edge_tiles import depth_step
+from renderer.frame.edges import Edges
+from renderer.frame.frame import FrameRenderer
+from renderer.frame.outlines import EYE
+from renderer.frame.picture import EXPOSURE, Picture
 from renderer.scene import Scene
 
 SIZE: Final = 64
