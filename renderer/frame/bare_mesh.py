@@ -7,6 +7,7 @@ from typing import Any, Final
 import moderngl
 import numpy as np
 import numpy.typing as npt
+
 from renderer.frame.edge_tiles import EdgeTiles
 from renderer.gl.program import Program
 

@@ -14,10 +14,10 @@ from typing import Final
 import moderngl
 import numpy as np
 import numpy.typing as npt
-from renderer.frame.boxes import Box, Boxes
-from renderer.gl.program import build_program
 
 from renderer.camera import View
+from renderer.frame.boxes import Box, Boxes
+from renderer.gl.program import build_program
 
 TILE_PX: Final = 8  # edge_tiles.frag reads blocks of two by two such tiles
 OPEN, EDGE = 64, 192  # it answers from here on where nothing was drawn, and where edges may be
