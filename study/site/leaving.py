@@ -99,7 +99,7 @@ def _keep_and_end(here: Here, visitor: Visitor) -> Response:
 def _ended(here: Here, visitor: Visitor, heading: str, *lines: str) -> Response:
     """Show a page after which nothing comes; ``heading`` and ``lines`` are keys of texts."""
     frame = shared(visitor.study, visitor, "ended")
-    text, link = frame["text"], Markup('<bdi dir="ltr">{}</bdi>').format(visitor.resume_url)
+    text, link = frame["text"], Markup('<a href="{0}" dir="ltr">{0}</a>').format(visitor.resume_url)
     return here.page(
         "participant/ended.html",
         **{**frame, "visitor": None},

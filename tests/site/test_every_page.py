@@ -235,6 +235,7 @@ def walk_to_the_clips(tour: Tour) -> None:
     page.emulate_media(reduced_motion="no-preference")
     tour.look("declined", "/declined")
     tour.look("problem", "/no-such-page")
+    tour.look("problem-link", "/link/nobody-has-this-link")
     tour.look("consent", "/consent")
     for box in page.get_by_role("checkbox").all():
         box.check()
@@ -379,6 +380,23 @@ def walk_to_the_end(tour: Tour) -> None:
     page.locator("form [type=submit]").last.click()
     page.wait_for_url("**/withdrawn")
     tour.check("withdrawn")
+    page.goto(f"{tour.site.url}/next")
+    tour.check("next-withdrawn")
+    end_and_keep(tour)
+
+
+def end_and_keep(tour: Tour) -> None:
+    """Look at the last page of somebody who ends before the end."""
+    guest = tour.site.guest()
+    guest.agree()
+    name = "ocularist_participant"
+    cookie: Any = {"name": name, "value": guest.client.cookies[name], "url": tour.site.url}
+    guest.client.close()
+    tour.page.context.add_cookies([cookie])
+    tour.page.goto(f"{tour.site.url}/stop")
+    tour.press("End and keep my answers")
+    expect(tour.page.get_by_text("The answers you gave are kept.")).to_be_visible()
+    tour.check("stopped")
 
 
 def look_at_the_dashboard(tour: Tour) -> None:
