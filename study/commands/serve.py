@@ -6,7 +6,7 @@ import argparse
 import gc
 import os
 import sys
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from study.commands.errors import CommandError
 from study.commands.options import add_listening, add_places, add_study, settings_of
@@ -24,6 +24,7 @@ DESCRIPTION = (
     "worker on the same database and clips' folder, or beforehand by ocularist render."
 )
 EXAMPLE = "thesis --host 0.0.0.0 --tls-cert cert.pem --tls-key key.pem"
+SITE: Final = "study.commands.serve:site_of_environment"
 GRACE_S: Final = 5  # for answers on their way when the site is told to stop
 STUDY_ID: Final = "OCULARIST_STUDY_ID"
 """Tells the site's processes which study newcomers take part in."""
@@ -51,6 +52,7 @@ def run(options: argparse.Namespace) -> int:
     from study.commands.listening import check_certificate, check_port, welcome
     from study.commands.preparing import prepare
     from study.commands.researcher import add_first
+    from study.commands.sharing import serve_together
 
     settings = settings_of(options)
     _check_processes(settings, options.processes)
@@ -63,19 +65,22 @@ def run(options: argparse.Namespace) -> int:
     if not options.quiet:
         print("\n".join(welcome(settings, prepared.study.title, password)), flush=True)
     os.environ |= {**_environment(settings), STUDY_ID: str(prepared.study.id)}
-    uvicorn.run(
-        "study.commands.serve:site_of_environment",
-        factory=True,
-        workers=options.processes,
-        host=settings.host,
-        port=settings.port,
-        log_level="warning",
-        access_log=False,
-        server_header=False,
-        timeout_graceful_shutdown=GRACE_S,
-        ssl_certfile=settings.tls_cert,
-        ssl_keyfile=settings.tls_key,
-    )
+    how: dict[str, Any] = {
+        "factory": True,
+        "workers": options.processes,
+        "host": settings.host,
+        "port": settings.port,
+        "log_level": "warning",
+        "access_log": False,
+        "server_header": False,
+        "timeout_graceful_shutdown": GRACE_S,
+        "ssl_certfile": settings.tls_cert,
+        "ssl_keyfile": settings.tls_key,
+    }
+    if options.processes > 1:
+        serve_together(uvicorn.Config(SITE, **how))
+    else:
+        uvicorn.run(SITE, **how)
     return 0
 
 

@@ -30,6 +30,7 @@ from study.design.definition import StudyDefinition, read_definition
 from study.settings import Settings
 
 UP_S: Final = 120.0
+LISTEN: Final = "0A"  # TCP_LISTEN in include/net/tcp_states.h
 NAME: Final = "load"
 PROGRAM: Final = ("-m", "study")
 
@@ -106,19 +107,17 @@ class LoadedSite:
             )
 
     async def wait(self) -> None:
-        """Wait until the site answers; raises SiteError if it ends or takes too long."""
+        """Wait until every process of the site listens.
+
+        Raises SiteError if it ends or takes too long.
+        """
         deadline = time.monotonic() + UP_S
-        while True:
-            try:
-                _, writer = await asyncio.open_connection("127.0.0.1", self.port)
-                writer.close()
-                return
-            except OSError:
-                if self.process is None or self.process.poll() is not None:
-                    raise SiteError(f"the site did not start: {self.last_words}") from None
-                if time.monotonic() > deadline:
-                    raise SiteError(f"the site took over {UP_S:g} s to start") from None
-                await asyncio.sleep(0.05)
+        while listening(self.port) < self.processes:
+            if self.process is None or self.process.poll() is not None:
+                raise SiteError(f"the site did not start: {self.last_words}")
+            if time.monotonic() > deadline:
+                raise SiteError(f"the site took over {UP_S:g} s to start")
+            await asyncio.sleep(0.05)
 
     def kill(self) -> None:
         """Kill the server, and its processes with it, as a power cut would."""
@@ -133,6 +132,15 @@ class LoadedSite:
         """The end of what the server printed."""
         log = self.folder / "log"
         return log.read_text(errors="replace")[-2000:] if log.exists() else ""
+
+
+def listening(port: int) -> int:
+    """Count the sockets that listen at a port of this machine, from /proc (proc(5), net/tcp).
+
+    Each process of a site has its own; a connection would say that one of them is there.
+    """
+    rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+    return sum(row[3] == LISTEN and int(row[1].split(":")[1], 16) == port for row in rows)
 
 
 def put_stand_ins(definition: StudyDefinition, folder: Path) -> None:
