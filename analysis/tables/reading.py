@@ -28,6 +28,7 @@ from analysis.tables.parsing import TableError, check_header, parse_table
 
 _FILES: Final = {table: f"{table}.csv" for table in COLUMNS}
 _CODEBOOK: Final = "codebook.json"
+_MOST_STEPS: Final = 101  # 0 to 100: an ordinal model has a threshold between any two
 
 
 @dataclass(frozen=True)
@@ -80,6 +81,7 @@ def tables_from(
     faults: list[str] = []
     notes: list[str] = []
     parsed: dict[str, pd.DataFrame] = {}
+    scale = _scale_of(codebook)
     for table in COLUMNS:
         frame = frames.get(table)
         accepted = accepted_in(codebook, table) if codebook else {}
@@ -101,10 +103,22 @@ def tables_from(
         parsed[table] = drop_repeated_rows(typed, table, name, faults=faults, notes=notes)
     if faults:
         raise TableError(faults)
-    accepted = accepted_in(codebook, "ratings") if codebook else {}
-    low, high = accepted.get("rating", SCALE)
-    made = _assemble(parsed, source=source, notes=notes, scale=(int(low), int(high)))
+    made = _assemble(parsed, source=source, notes=notes, scale=scale)
     return replace(made, margins=declared_margins(codebook)) if codebook else made
+
+
+def _scale_of(codebook: Mapping[str, Any] | None) -> tuple[int, int]:
+    """Return the lowest and highest rating; raises TableError for what no one can rate on."""
+    accepted = accepted_in(codebook, "ratings") if codebook else {}
+    low, high = (float(end) for end in accepted.get("rating", SCALE))
+    if not (low.is_integer() and high.is_integer() and 1 <= high - low < _MOST_STEPS):
+        raise TableError(
+            [
+                f"{_CODEBOOK}: rating: found {low:g} to {high:g}; accepted: whole numbers, the "
+                f"highest 1 to {_MOST_STEPS - 1} above the lowest"
+            ]
+        )
+    return int(low), int(high)
 
 
 def _assemble(

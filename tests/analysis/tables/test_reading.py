@@ -142,6 +142,18 @@ def test_the_scale_comes_from_the_codebook(tmp_path: Path) -> None:
     assert read_source(tmp_path).scale == (1, 7)
 
 
+@pytest.mark.parametrize("scale", [(5, 1), (3, 3), (0.5, 5.5), (1, 1_000_000)])
+def test_a_scale_that_nobody_can_rate_on_is_refused(
+    tmp_path: Path, scale: tuple[float, float]
+) -> None:
+    write(tmp_path, "participant,lod,rating\nA,low,3\n")
+    write(tmp_path, json.dumps(codebook({"rating": scale})), "codebook.json")
+    assert faults_of(tmp_path) == (
+        f"codebook.json: rating: found {scale[0]:g} to {scale[1]:g}; accepted: whole numbers, the "
+        "highest 1 to 100 above the lowest",
+    )
+
+
 def test_a_broken_codebook_is_refused(tmp_path: Path) -> None:
     write(tmp_path, "participant,lod,rating\n")
     write(tmp_path, "{", "codebook.json")
