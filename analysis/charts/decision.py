@@ -33,6 +33,10 @@ from analysis.tables.ordering import distance_order, lod_order
 from analysis.tables.records import records
 from analysis.words.wording import milliseconds, percent
 
+NO_ORDER: Final = (
+    "The LoDs beside the best one have no rank, so none is the cheapest of a sequence. Each has a "
+    "verdict of its own: the sentences above, and the chart of what is lost."
+)
 TITLE: Final = "Which LoD is enough, and how sure that is"
 REFERENCE: Final = "reference"
 _COLUMNS: Final = ("distance", "lod", "verdict", "is_tested", "share_cheapest", "chosen", "ms")
@@ -62,7 +66,8 @@ def decision_chart(material: Material) -> Figure:
     """Draw, per distance and LoD, the share of draws in which it is the cheapest that is enough."""
     table = decision_cells(material)
     if table.empty:
-        return message_figure(TITLE, NO_VERDICT, is_simulated=material.is_simulated)
+        reason = NO_ORDER if material.inference.effects else NO_VERDICT
+        return message_figure(TITLE, reason, is_simulated=material.is_simulated)
     tables = material.tables
     distances = [d for d in distance_order(tables.ratings) if d in set(table["distance"])]
     lods = [lod for lod in lod_order(tables.ratings) if lod in set(table["lod"])][::-1]

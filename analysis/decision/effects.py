@@ -66,6 +66,11 @@ class EffectVerdict:
     level: float
 
     @property
+    def is_reached(self) -> bool:
+        """Always: no sequence stops before a LoD without a rank."""
+        return True
+
+    @property
     def outcome(self) -> str:
         """One of the three verdicts."""
         if self.p_different <= self.level:

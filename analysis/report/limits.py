@@ -11,6 +11,7 @@ from typing import Final
 import pandas as pd
 
 from analysis.audit import Audit
+from analysis.decision.effects import EffectVerdict
 from analysis.decision.margins import DECLARED, Margins
 from analysis.decision.verdicts import EQUIVALENT, NOT_SHOWN, Verdict
 from analysis.descriptive.means import answered, differences_from_best
@@ -50,13 +51,14 @@ def limits(tables: Tables, audit: Audit, inference: Inference) -> list[str]:
 
 def _about_verdicts(inference: Inference) -> list[str]:
     """Say which LoDs are open and why, and what the word equivalent covers."""
-    if not inference.decisions:
+    ranked = [verdict for decision in inference.decisions for verdict in decision.verdicts]
+    verdicts: list[Verdict | EffectVerdict] = [*ranked, *inference.effects]
+    if not verdicts:
         return [
             "There is no verdict on any LoD: nowhere did two people or more rate the highest LoD "
             "and a lower one, with ranks that say which is which (the names low, medium, high and "
             "ultra, or a column lod_rank)."
         ]
-    verdicts = [verdict for decision in inference.decisions for verdict in decision.verdicts]
     text = [
         *_open(verdicts),
         *_unmeasured(verdicts),
@@ -69,7 +71,7 @@ def _about_verdicts(inference: Inference) -> list[str]:
     return text
 
 
-def _open(verdicts: Iterable[Verdict]) -> list[str]:
+def _open(verdicts: Iterable[Verdict | EffectVerdict]) -> list[str]:
     """Name what is neither shown to be enough nor shown not to be, tested or not."""
     unsure = [v for v in verdicts if v.outcome == NOT_SHOWN]
     text = []
@@ -86,7 +88,7 @@ def _open(verdicts: Iterable[Verdict]) -> list[str]:
     return text
 
 
-def _unmeasured(verdicts: Iterable[Verdict]) -> list[str]:
+def _unmeasured(verdicts: Iterable[Verdict | EffectVerdict]) -> list[str]:
     unknown = [v for v in verdicts if v.noticed is None]
     if not unknown:
         return []
@@ -114,7 +116,7 @@ def _margins(margins: Margins, has_equals: bool) -> list[str]:
     return text
 
 
-def _named(verdicts: Iterable[Verdict]) -> str:
+def _named(verdicts: Iterable[Verdict | EffectVerdict]) -> str:
     """Name LoDs by distance: "high at macroscopic; medium and low at far"."""
     by_distance: dict[str, list[str]] = {}
     for verdict in verdicts:

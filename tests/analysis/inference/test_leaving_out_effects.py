@@ -6,11 +6,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from analysis.audit import audit_tables
+from analysis.charts.decision import NO_ORDER, decision_chart
+from analysis.charts.material import Material
 from analysis.decision.effects import decide_effects, decided, levels_of
 from analysis.inference.deciding import fit_noticing, fit_realism
 from analysis.inference.inferring import Inference, infer
 from analysis.inference.leaving_out import COLUMNS
 from analysis.inference.leaving_out_effects import effects_without_each
+from analysis.report.limits import limits
 from analysis.screening.sensitivity import without
 from analysis.simulation.observers import Stimulus
 from analysis.simulation.simulated import simulate_tables
@@ -92,3 +96,17 @@ def test_without_effects_nobody_is_left_out(inference: Inference) -> None:
     nothing = pd.DataFrame()
     assert effects_without_each((), inference.realism, None, comparisons=nothing).empty
     assert effects_without_each(inference.effects, None, None, comparisons=nothing).empty
+
+
+def test_the_report_contradicts_no_verdict_on_an_effect(
+    ablation: Tables, inference: Inference
+) -> None:
+    """Without a sequence there are verdicts all the same: neither limits nor charts deny them."""
+    audit = audit_tables(ablation.ratings, ablation.comparisons)
+    told = " ".join(limits(ablation, audit, inference))
+    assert "There is no verdict" not in told
+    open_ones = [own for own in inference.effects if own.outcome == "not shown"]
+    assert all(f"{own.lod} at {own.distance}" in told for own in open_ones[:1])
+    figure = decision_chart(Material(ablation, inferred=inference))
+    text = " ".join(own.get_text() for own in figure.texts).replace("\n", " ")
+    assert NO_ORDER in text
