@@ -20,6 +20,9 @@ from study.design.parts import Size
 
 ROOT = Path(__file__).parent.parent
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
+TOPS = ("analysis", "renderer", "study")
+FOLDERS = (*TOPS, "tests", "templates", "static", "deploy")
+SOURCES = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.*")]
 
 
 def row_of(column: Column) -> str:
@@ -94,6 +97,23 @@ def test_the_whole_study_of_the_documents_can_be_checked() -> None:
 
 def unanswered(study: StudyDefinition) -> list[str]:
     return [line for line in warnings(study) if line.startswith("questions: ")]
+
+
+def test_the_index_leads_to_every_page_and_names_every_room() -> None:
+    index = ROOT / "docs" / "README.md"
+    pages = {path.name for path in index.parent.glob("*.md")} - {"README.md"}
+    assert pages - {file for file, _ in links(index)} == set()
+    text = index.read_text(encoding="utf-8")
+    rooms = {path.parent.name for top in TOPS for path in (ROOT / top).rglob("*/__init__.py")}
+    assert {room for room in rooms - {"versions"} if f"`{room}`" not in text} == set()
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_every_source_that_a_page_names_exists(document: Path) -> None:
+    text = document.read_text(encoding="utf-8")
+    named = set(re.findall(r"`([\w/]+\.(?:py|frag|vert|glsl))`", text))
+    ends = [f"/{path.relative_to(ROOT).as_posix()}" for path in SOURCES]
+    assert [name for name in named if not any(end.endswith(f"/{name}") for end in ends)] == []
 
 
 def test_every_file_that_the_decisions_name_exists() -> None:

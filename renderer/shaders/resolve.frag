@@ -17,7 +17,7 @@ vec3 tone_curve(vec3 u) {
 }
 
 // IEC 61966-2-1 with its power of 1 / 2.4 fitted by three square roots (minimax, within 0.012 of an
-// 8-bit step; tests/renderer/test_picture.py): on software GL the power costs half the pass.
+// 8-bit step; tests/renderer/frame/test_picture.py): on software GL the power costs half the pass.
 const vec4 FIT = vec4(0.64236709, 0.71210854, -0.3368691, -0.01756334);
 
 vec3 encode_srgb(vec3 c) {
