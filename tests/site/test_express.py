@@ -104,3 +104,43 @@ def test_a_mould_escapes_what_it_is_filled_with() -> None:
     filled = mould.fill({"who": "<b>", "what": place("x"), "unused": object()})
     assert filled == f"<p>&lt;b&gt; and &lt;b&gt;: {place('x')}.</p>"
     assert mould_of("no place").fill({}) == "no place"
+
+
+def test_who_joins_and_leaves_passes_the_framework(
+    guest: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: set[str] = set()
+    keep = FastAPI.__call__
+
+    async def noted(self: FastAPI, scope: Any, receive: Any, send: Any) -> None:
+        seen.add(scope.get("path", ""))
+        await keep(self, scope, receive, send)
+
+    monkeypatch.setattr(FastAPI, "__call__", noted)
+    guest.walk_to_trial()
+    guest.get("/thanks")
+    joining = {"/consent", "/continue", "/about-you", "/instructions", "/preparing", "/thanks"}
+    assert seen.isdisjoint(joining | {"/preparing/state"})
+
+
+@pytest.mark.parametrize(
+    ("query", "is_short"),
+    [
+        (b"screen_width_px=1920&screen_height_px=1080", True),
+        (b"screen_width_px=1920&lang=ar", False),
+    ],
+)
+def test_a_query_is_known_of_one_page_alone(query: bytes, is_short: bool) -> None:
+    asked = scope("GET", "/preparing/state", query_string=query)
+    assert (wanted(asked) is not None) is is_short
+    assert wanted({**asked, "path": "/consent"}) is None
+
+
+@pytest.mark.parametrize("database_kind", ["sqlite"])
+@pytest.mark.parametrize("query", ["", "?screen_width_px=0&screen_height_px=5"])
+def test_a_screen_that_cannot_be_is_refused_on_both_ways(guest: Any, query: str) -> None:
+    guest.walk_to_trial()
+    short = guest.client.get(f"/preparing/state{query}")
+    long = guest.client.get(f"/preparing/state{query or '?'}&lang=en")
+    assert (short.status_code, short.json()) == (422, {"code": "NOT-READABLE"})
+    assert (long.status_code, long.json()) == (422, {"code": "NOT-READABLE"})
