@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import errno
+import os
 import stat
 from pathlib import Path
 
@@ -48,6 +50,22 @@ def test_links_are_written_once_for_their_owner_alone(
     assert "2 new personal links; in all 0 used and 4 unused." in capsys.readouterr().out
     assert ",http://127.0.0.1:8000/link/" in (folder / "more.csv").read_text()
     assert (folder / "more.csv").read_text().splitlines()[1].startswith("3,")
+    db.close()
+
+
+def test_no_link_is_made_where_the_disk_has_no_room_for_it(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "posix_fallocate", refuse)
+    assert main(["links", "thesis", "--count", "2", "--data", "data"]) == 1
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert said.endswith("links-thesis.csv: cannot be written (No space left on device)")
+    assert not list(folder.glob("*.csv"))
+    db = opened(folder)
+    assert links.counts(db, studies.all_studies(db)[0]).unused == 0
     db.close()
 
 

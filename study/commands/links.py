@@ -62,11 +62,13 @@ def run(options: argparse.Namespace) -> int:
     prepared = prepare(settings, options.study)
     out = options.out or Path(f"links-{prepared.study.key}.csv")
     try:
-        # The file first: links that nobody can read would let nobody in.
-        descriptor = _new_file(out)
+        # The file and its room on the disk first: links that nobody can read would let nobody in.
+        longest = len(f"{2**63},{url}/link/") + 64
+        descriptor = _new_file(out, size=longest * (options.count + 1))
         made = links.make(prepared.db, prepared.study, options.count)
         with os.fdopen(descriptor, "w", encoding="utf-8") as file:
             file.write(table_of(made, url))
+            file.truncate()
         found = links.counts(prepared.db, prepared.study)
     finally:
         prepared.db.close()
@@ -90,14 +92,24 @@ def _site(url: str) -> str:
     return url.rstrip("/")
 
 
-def _new_file(path: Path) -> int:
-    """Make a file that its owner alone can read; whoever has a link can take part with it."""
+def _new_file(path: Path, *, size: int) -> int:
+    """Make a file that its owner alone can read; whoever has a link can take part with it.
+
+    ``size`` bytes are set aside for it; where the disk has no room no file is left.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        return os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600)
+        descriptor = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600)
     except FileExistsError:
         raise CommandError(
             f"{path}: there is such a file; name another with --out, links in it may be in use"
         ) from None
     except OSError as error:
         raise CommandError(f"{path}: cannot be written ({error.strerror})") from None
+    try:
+        os.posix_fallocate(descriptor, 0, size)
+    except OSError as error:
+        os.close(descriptor)
+        path.unlink()
+        raise CommandError(f"{path}: cannot be written ({error.strerror})") from None
+    return descriptor
