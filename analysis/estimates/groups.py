@@ -15,7 +15,7 @@ from typing import Any, Final
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.stats import t
+from scipy.special import stdtr, stdtrit
 
 from analysis.estimates.multiplicity import holm
 
@@ -83,13 +83,13 @@ def welch(own: Floats, others: Floats) -> Difference | None:
         return None
     freedom = error**4 / (first**2 / (len(own) - 1) + second**2 / (len(others) - 1))
     estimate = float(own.mean() - others.mean())
-    far = float(t.ppf(0.975, freedom))
+    far = float(stdtrit(freedom, 0.975))
     return Difference(
         estimate=estimate,
         low=estimate - far * error,
         high=estimate + far * error,
-        p=float(2 * t.sf(abs(estimate) / error, freedom)),
-        detectable=float((far + t.ppf(_POWER, freedom)) * error),
+        p=float(2 * stdtr(freedom, -abs(estimate) / error)),
+        detectable=float((far + stdtrit(freedom, _POWER)) * error),
     )
 
 

@@ -13,8 +13,7 @@ from typing import Any, Final
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.special import ndtri
-from scipy.stats import t
+from scipy.special import ndtri, stdtrit
 
 from analysis.decision.margins import Margins
 from analysis.decision.verdicts import excess_of
@@ -37,7 +36,7 @@ def smallest_margin(error: float, people: int, *, confidence: float, power: floa
     ``error`` is the estimate's standard error: its one-sided bound lies t(n - 1) of them above it,
     and the estimate itself falls z of them too high in a share of 1 - ``power`` of studies.
     """
-    return float((t.ppf(confidence, max(people - 1, 1)) + ndtri(power)) * error)
+    return float((stdtrit(max(people - 1, 1), confidence) + ndtri(power)) * error)
 
 
 def people_for(margin: float, error: float, people: int, *, confidence: float) -> int | None:
@@ -98,7 +97,7 @@ def _reach(
     value, draws = found
     confidence = margins.confidence
     bound = float(np.quantile(draws, confidence))
-    error = max(bound - value, 0.0) / float(t.ppf(confidence, max(people - 1, 1)))
+    error = max(bound - value, 0.0) / float(stdtrit(max(people - 1, 1), confidence))
     return {
         f"{name}_error": error,
         f"smallest_{name}_margin": smallest_margin(error, people, confidence=confidence),

@@ -8,8 +8,16 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import kstest, norm
 
-from analysis.diagnostics.checks import BY_PERSON, COLUMNS, end_counts, fit_checks, misfits
+from analysis.diagnostics.checks import (
+    BY_PERSON,
+    COLUMNS,
+    end_counts,
+    fit_checks,
+    misfits,
+    normal_law,
+)
 from analysis.diagnostics.predicted import predicted_ends
 from analysis.diagnostics.residuals import quantile_residuals
 from analysis.estimates.realism import realism_of
@@ -74,3 +82,14 @@ def test_ends_are_counted_together(rng: np.random.Generator) -> None:
     assert given == 2
     assert low <= mean <= high
     assert mean == pytest.approx(2, abs=1)
+
+
+@pytest.mark.parametrize("count", [8, 160])
+def test_the_normal_law_is_judged_as_scipy_judges_it(count: int) -> None:
+    rng = np.random.default_rng(count)
+    for spread in (0.5, 1.0, 1.3):
+        values = spread * rng.standard_normal(count)
+        distance, p = normal_law(values)
+        expected = kstest(values, norm.cdf)
+        assert distance == pytest.approx(expected.statistic, rel=1e-12)
+        assert p == pytest.approx(expected.pvalue, abs=0.02)
