@@ -177,23 +177,26 @@ def figure_bytes(figure: Figure, kind: str) -> bytes:
 
     Names are anybody's, so a dollar sign in one begins no formula.
     """
-    for text in figure.findobj(Text):
-        text.set_parse_math(False)
-    with mpl.rc_context({"text.parse_math": False}):  # labels of ticks that are made on the way
-        return _bytes(figure, kind)
-
-
-def _bytes(figure: Figure, kind: str) -> bytes:
-    engine = figure.get_layout_engine()
-    if engine is not None:  # lay out once for all kinds of file, without drawing for it
-        if figure.axes:
-            engine.execute(figure)
-        figure.set_layout_engine(None)  # "none" would leave an engine that costs two more draws
-    buffer = io.BytesIO()
+    # The salt of SVG ids is a setting of the whole process; nothing else here depends on it.
+    # Labels of ticks are made while a figure is drawn, so that they ask for a setting, too.
+    settings: Any = {"text.parse_math": False, "svg.hashsalt": "ocularist", "svg.fonttype": "path"}
     more: dict[str, Any] = {"metadata": {"Date": None}}
     if kind == "png":
         more = {"pil_kwargs": {"compress_level": 1}}  # a third of the time of 6, a fifth more bytes
-    # The salt of SVG ids is a setting of the whole process; nothing else here depends on it.
-    with mpl.rc_context({"svg.hashsalt": "ocularist", "svg.fonttype": "path"}):
+    buffer = io.BytesIO()
+    with mpl.rc_context(settings):
+        _lay_out(figure)
         figure.savefig(buffer, format=kind, dpi=PNG_DPI, **more)
     return buffer.getvalue()
+
+
+def _lay_out(figure: Figure) -> None:
+    """Lay a figure out once for all kinds of file, without drawing for it."""
+    engine = figure.get_layout_engine()
+    if engine is None:  # it was laid out before
+        return
+    for text in figure.findobj(Text):
+        text.set_parse_math(False)
+    if figure.axes:
+        engine.execute(figure)
+    figure.set_layout_engine(None)  # "none" would leave an engine that costs two more draws
