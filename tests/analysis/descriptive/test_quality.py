@@ -48,8 +48,9 @@ def test_use_of_the_scale_by_person() -> None:
 
 
 def test_the_number_of_perfect_ratings_is_said_with_who_gave_them() -> None:
-    rows = [(p, "ultra", 5) for p in "AAAB"] + [("B", "low", 1)]
-    assert quality_statements(tables(rows)) == [
+    given = [*((person, "ultra", 5) for person in "AAAB"), ("B", "low", 1)]
+    rows = [(*own, trial) for trial, own in enumerate(given)]
+    assert quality_statements(tables(rows, "trial")) == [
         "The highest rating (5) was given 4 times in 5, at most 3 times by one person.",
         "Gave the same rating throughout: A.",
     ]
