@@ -115,6 +115,10 @@ def _thin(shape: Floats, piece: Piece) -> tuple[Indices, Floats, Floats, Floats,
     if piece.turned_in_above_mm is not None:
         is_hem = base_mesh().vertices_mm[rows, 1] > piece.turned_in_above_mm
         again, places, facing, more = hem(positions, whole, is_hem=is_hem)
+        if (
+            piece.part == "hair"
+        ):  # its rim is thin: what one sees of it is lit as the hair beside it
+            facing = normals[again]
         rows = np.concatenate([rows, rows[again]])
         positions, normals = np.concatenate([positions, places]), np.concatenate([normals, facing])
         whole = np.concatenate([whole, more])

@@ -92,3 +92,17 @@ def test_nobody_wears_the_colour_of_skin() -> None:
         top = np.array(person.top)
         hue = skins / skins.sum(axis=1, keepdims=True)
         assert np.abs(hue - top / top.sum()).max(axis=1).min() > 0.05, person.name
+
+
+def test_the_rim_of_short_hair_is_lit_as_the_hair_beside_it() -> None:
+    """Turned in, it faced away from the sky: a thin dark line along the hairline."""
+    body = cached_body(TEMPLATES["elder"])
+    hair = np.unique(part(body, "hair"))
+    places, rows = np.unique(body.positions_mm[hair].round(6), axis=0, return_inverse=True)
+    first = np.full(len(places), len(hair))
+    np.minimum.at(first, rows.ravel(), np.arange(len(hair)))
+    is_again = np.arange(len(hair)) != first[rows.ravel()]
+    assert is_again.sum() > 10
+    normals = body.normals[hair]
+    likeness = (normals * normals[first[rows.ravel()]]).sum(axis=1)[is_again]
+    assert np.median(likeness) == pytest.approx(1.0, abs=1e-6)
