@@ -13,6 +13,7 @@ import moderngl
 import numpy as np
 import pytest
 
+from renderer.camera import cropped, views
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, TABLE, Detail
 from renderer.encoding.fidelity import eye_rectangles
@@ -81,6 +82,20 @@ def test_one_eye_alone_is_drawn_without_the_other(gl: moderngl.Context, scene: S
     frame = FrameRenderer(gl, SPEC, scene=scene, eyes=(1,)).render(0.0)
     assert frame.visible_px[0] == 0
     assert frame.visible_px[1] > 500
+
+
+def test_a_part_of_a_view_shows_what_the_whole_shows_there(
+    gl: moderngl.Context, scene: Scene
+) -> None:
+    """The background too, which looks along each pixel's direction by the view's projection."""
+    spec = replace(SPEC, right=LOW, distance="far")
+    whole = FrameRenderer(gl, spec, scene=scene)
+    part = FrameRenderer(gl, spec.resized(100, 80), scene=scene)
+    (view,) = views(spec, 20.0)
+    shown = part.render_views((cropped(view, (20, 30, 100, 80)),), time_s=0.5).pixels
+    expected = whole.render(20.0, time_s=0.5).pixels[70:150, 20:120]
+    assert np.abs(shown.astype(int) - expected).mean() < 1.0
+    assert expected.std() > 5.0
 
 
 @pytest.mark.parametrize("effect", EFFECTS)
