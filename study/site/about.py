@@ -17,7 +17,6 @@ from study.design.definition import StudyDefinition
 from study.design.questions import AnswerError, Question
 from study.site.access import Visitor, visitor_or_none
 from study.site.asker import nobody
-from study.site.casting import cast_page
 from study.site.forms import answers_in, first, question_rows
 from study.site.place import Place
 from study.site.way import AtStep, Sent, at_step, go_on, on_the_way, sent_form
@@ -31,15 +30,7 @@ async def about(request: Request) -> Response:
     at = await at_step(request, "about")
     if drafts := await at.here.writer.look(partial(steps.drafting, at.who.id)):
         return await run_in_threadpool(_about_page, at.here, at.visitor, drafts)
-    return cast_page(
-        at.here,
-        at.visitor.study,
-        at.visitor,
-        "about",
-        own={"key": secrets.token_hex(16)},
-        asked=(at.has_health,),
-        fixed=lambda _frame: _blank(at),
-    )
+    return at.page("about", own={"key": secrets.token_hex(16)}, fixed=partial(_blank, at))
 
 
 def _blank(at: AtStep) -> dict[str, Any]:
@@ -50,7 +41,6 @@ def _blank(at: AtStep) -> dict[str, Any]:
         "rows": question_rows(questions),
         "answers": {},
         "faults": {},
-        "way": at.marks("about"),
     }
 
 
@@ -109,18 +99,10 @@ def _again(request: Request, sent: Sent, error: AnswerError) -> Response:
 async def instructions(request: Request) -> Response:
     """Say what to do."""
     at = await at_step(request, "instructions")
-    definition = at.visitor.study.definition
-    return cast_page(
-        at.here,
-        at.visitor.study,
-        at.visitor,
+    return at.page(
         "instructions",
         own={"resume_url": at.visitor.resume_url},
-        asked=(at.has_health,),
-        fixed=lambda _frame: {
-            "instructions": definition.instructions,
-            "way": at.marks("instructions"),
-        },
+        fixed=lambda: {"instructions": at.visitor.study.definition.instructions},
     )
 
 

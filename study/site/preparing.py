@@ -20,7 +20,6 @@ from study.data.senders import seeing
 from study.data.studies import Study
 from study.site.access import redirect, step_url
 from study.site.asker import Asker, by_cookie, found, locked, study_of
-from study.site.casting import cast_page
 from study.site.forms import first
 from study.site.language import language_of
 from study.site.media import to_preload
@@ -39,17 +38,12 @@ async def preparing(request: Request) -> Response:
     """Show how far the clips are; a script asks ``/preparing/state`` and goes on by itself."""
     at = await at_step(request, "preparing")
     definition = at.visitor.study.definition
-    return cast_page(
-        at.here,
-        at.visitor.study,
-        at.visitor,
+    return at.page(
         "preparing",
         own={"resume_url": at.visitor.resume_url},
-        asked=(at.has_health,),
-        fixed=lambda _frame: {
+        fixed=lambda: {
             "smallest": min(definition.sizes, key=lambda size: size.width),
             "has_practice": bool(definition.practice),
-            "way": at.marks("preparing"),
         },
     )
 

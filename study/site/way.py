@@ -5,7 +5,7 @@ A page is one look at the database and a form one errand, among those of everybo
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -25,6 +25,7 @@ from study.site.access import (
     step_url,
 )
 from study.site.asker import Asker, by_cookie, found, locked, study_of
+from study.site.casting import cast_page
 from study.site.forms import Fields, first, read_form
 from study.site.frame import shared
 from study.site.place import Place, place_in
@@ -47,6 +48,20 @@ class AtStep:
         """Return the marks of the way, for the page."""
         definition = self.visitor.study.definition
         return _marks(pages_before(definition, has_health=self.has_health), page)
+
+    def page(
+        self, name: str, *, own: Mapping[str, object], fixed: Callable[[], Mapping[str, Any]]
+    ) -> HTMLResponse:
+        """Return a page of the way, with its marks; ``own`` and ``fixed`` as ``cast_page`` says."""
+        return cast_page(
+            self.here,
+            self.visitor.study,
+            self.visitor,
+            name,
+            own=own,
+            asked=(self.has_health,),
+            fixed=lambda _frame: {**fixed(), "way": self.marks(name)},
+        )
 
 
 @dataclass(frozen=True)
