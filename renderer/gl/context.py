@@ -46,3 +46,13 @@ def is_software(gl_renderer: str) -> bool:
     """Whether a renderer of this name computes on the processor."""
     name = gl_renderer.lower()
     return any(word in name for word in SOFTWARE)
+
+
+def chooses_parts(gl: moderngl.Context) -> bool:
+    """Whether it saves time to choose on the processor which parts of a scene a frame draws.
+
+    Software GL shades on the processor as well: what is left out is won. On a GPU Python's choice
+    takes longer than drawing everything, and reading a picture back amid a frame makes both wait.
+    Asks GL: call it once for each object that is made.
+    """
+    return is_software(gl.info["GL_RENDERER"])
