@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Any
 
 from sqlalchemy import select
@@ -14,6 +15,7 @@ from study.data.database import Database
 from study.data.pauses import attention_answers
 from study.data.schema import EventRow, ParticipantRow, SessionRow, TrialRow
 from study.data.steps import ABOUT
+from study.data.stopping import STOPPED
 from study.data.studies import Study
 from study.data.trials import Trial, trial_of
 from study.design.questions import Value
@@ -30,7 +32,7 @@ class CollectedTrial:
 
 @dataclass(frozen=True)
 class Collected:
-    """One participant with everything stored about them.
+    """One participant with everything stored about them; ``stopped_at`` if they ended early.
 
     ``checks`` holds report and facts of every check before the clips that is ``done``;
     ``attention`` the answers to the questions between trials, by their pause.
@@ -41,6 +43,7 @@ class Collected:
     done: frozenset[str]
     checks: dict[str, dict[str, Any]]
     sittings: int
+    stopped_at: datetime | None
     about: dict[str, Value | None]
     attention: dict[str, Mapping[str, Any]]
     trials: Sequence[CollectedTrial]
@@ -81,11 +84,14 @@ def _together(
     by_trial: dict[int, list[EventRow]] = defaultdict(list)
     about: dict[int, dict[str, Value | None]] = defaultdict(dict)
     others: dict[int, list[tuple[str, dict[str, Any]]]] = defaultdict(list)
+    stopped: dict[int, datetime] = {}
     for event in events:
         if event.trial_id is None:
             others[event.participant_id].append((event.kind, event.payload))
         if event.trial_id is not None:
             by_trial[event.trial_id].append(event)
+        elif event.kind == STOPPED:
+            stopped[event.participant_id] = event.created_at
         elif event.kind == ABOUT:
             about[event.participant_id].update(event.payload["answers"])
     numbers = {sitting.id: sitting.number for sitting in sittings}
@@ -106,6 +112,7 @@ def _together(
             done=done_in(others[person.id], study.definition),
             checks={kind: given for kind, given in others[person.id] if kind in CHECKS},
             sittings=len(own[person.id]),
+            stopped_at=stopped.get(person.id),
             about=about[person.id],
             attention=attention_answers(others[person.id]),
             trials=by_person[person.id],

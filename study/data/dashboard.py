@@ -20,7 +20,10 @@ from study.design.completion import OUTCOMES
 
 @dataclass(frozen=True)
 class Person:
-    """One participant's line. ``is_here`` is True while their sitting lives."""
+    """One participant's line. ``is_here`` is True while their sitting lives.
+
+    ``ended_early`` is True for somebody who broke off, kept their answers and did not come back.
+    """
 
     public_id: str
     simulated: bool
@@ -36,6 +39,7 @@ class Person:
     last_seen_at: datetime
     completed_at: datetime | None
     is_here: bool
+    ended_early: bool
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,7 @@ class Counts:
     here: int
     completed: int
     outcomes: dict[str, int]
+    ended_early: int
     withdrawn: int
     trials: int
     steps: dict[StepName, int]
@@ -102,6 +107,9 @@ def _person(study: Study, one: Collected, now: datetime) -> Person:
             step = "practice" if open_trial.is_practice else "trial"
             number = open_trial.number
             total = sum(c.trial.is_practice == open_trial.is_practice for c in one.trials)
+    ended_early = (
+        row.outcome is None and one.stopped_at is not None and row.last_seen_at <= one.stopped_at
+    )
     return Person(
         public_id=row.public_id,
         simulated=row.simulated,
@@ -116,7 +124,8 @@ def _person(study: Study, one: Collected, now: datetime) -> Person:
         created_at=row.created_at,
         last_seen_at=row.last_seen_at,
         completed_at=row.completed_at,
-        is_here=row.outcome is None and now - row.last_seen_at < IDLE,
+        is_here=row.outcome is None and not ended_early and now - row.last_seen_at < IDLE,
+        ended_early=ended_early,
     )
 
 
@@ -140,6 +149,7 @@ def _counts(
         here=sum(person.is_here for person, _ in mine),
         completed=sum(person.completed_at is not None for person, _ in mine),
         outcomes={outcome: outcomes[outcome] for outcome in OUTCOMES},
+        ended_early=sum(person.ended_early for person, _ in mine),
         withdrawn=steps["withdrawn"],
         trials=sum(
             c.trial.is_complete and not c.trial.is_practice for _, one in mine for c in one.trials

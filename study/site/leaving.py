@@ -9,7 +9,7 @@ from fastapi import APIRouter, Depends, Request
 from fastapi.responses import HTMLResponse, Response
 from markupsafe import Markup
 
-from study.data import erasure, events, participants
+from study.data import erasure, participants, stopping
 from study.site.access import (
     PARTICIPANT_COOKIE,
     REMEMBER_S,
@@ -30,7 +30,6 @@ from study.site.language import Wishes
 from study.site.place import Here
 
 router = APIRouter(default_response_class=HTMLResponse)
-STOPPED = "stopped"
 IDLE_S = int(participants.IDLE.total_seconds())
 
 
@@ -84,7 +83,7 @@ def end(request: Request, here: Here, visitor: AVisitor, fields: VisitorsForm) -
 
 
 def _keep_and_end(here: Here, visitor: Visitor) -> Response:
-    events.record(here.db, visitor.participant, key=f"stop-{secrets.token_hex(8)}", kind=STOPPED)
+    stopping.stop(here.db, visitor.participant, key=f"stop-{secrets.token_hex(8)}")
     page = _ended(
         here,
         visitor,
