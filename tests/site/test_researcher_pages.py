@@ -134,7 +134,6 @@ def test_people_are_listed_with_their_place_and_label(site: Any, ada: Any, guest
     assert "completed" in page
 
 
-@pytest.mark.parametrize("are_clips_ready", [False])
 def test_who_ended_early_is_told_apart_from_who_is_at_work(ada: Any, guest: Any) -> None:
     guest.walk_to_trial()
     guest.get("/stop")
@@ -144,6 +143,7 @@ def test_who_ended_early_is_told_apart_from_who_is_at_work(ada: Any, guest: Any)
     assert (tile(page, "At work now"), tile(page, "Ended early")) == (["0"], ["1"])
 
 
+@pytest.mark.parametrize("are_clips_ready", [False])
 def test_a_failed_clip_shows_its_error_and_can_be_tried_again(site: Any, ada: Any) -> None:
     for _ in range(jobs.MAX_ATTEMPTS):
         job = jobs.claim(site.db, worker="w")
