@@ -12,22 +12,17 @@ from collections import OrderedDict
 from dataclasses import dataclass, replace
 from typing import Final
 
-import numpy as np
-import numpy.typing as npt
-
-from renderer.camera import IRIS_PX, View, iris_px, look_at, perspective, views
+from renderer.camera import IRIS_PX, View, iris_px, radius_of_px, views
 from renderer.clip import ClipSpec
 from renderer.detail import LEVELS, Detail
 from renderer.frame.frame import FrameRenderer
 from renderer.frame.picture import Pixels
 from renderer.gl.context import is_software
 from renderer.lod.path import Places, Shares, places_of_view, shares_of
+from renderer.overhead import overhead_view, reach_mm
 from renderer.studio import Studio
 
 KEPT_RENDERERS: Final = 4  # the last ones stay, so that a key goes there and back quickly
-OVERHEAD_MM: Final = (3800.0, 5200.0, 7600.0)  # where the camera of the whole scene stands
-OVERHEAD_TARGET_MM: Final = (0.0, -900.0, -400.0)
-OVERHEAD_FOV_DEG: Final = 24.0
 BOTH: Final = (0, 1)
 
 
@@ -97,12 +92,13 @@ class Inspector:
 
         Clips leave out the walker and the waver, who are there for the eyes to mirror.
         """
+        above = overhead_view(spec, reach_mm=reach_mm(radius_of_px(viewpoint.distance_px)))
         renderer = self._renderer(spec, BOTH)
         renderer.wireframe = False
         crowd = renderer.scene.crowd
         crowd.shows_everybody = True
         try:
-            return self._draw(renderer, (overhead_view(spec),), viewpoint)
+            return self._draw(renderer, (above,), viewpoint)
         finally:
             crowd.shows_everybody = False
 
@@ -164,22 +160,3 @@ def _named(shares: Shares) -> str:
     if len(names) == 1:
         return names[0][0]
     return ", ".join(f"{name} {share:.0%}".replace("%", " %") for name, share in names)
-
-
-def overhead_view(spec: ClipSpec) -> View:
-    """Return a camera above the scene, high to one side: the thesis's Figure 3.1."""
-    position = np.array(OVERHEAD_MM)
-    projection = perspective(OVERHEAD_FOV_DEG, spec.width / spec.height, 500.0, 120000.0)
-    matrix = look_at(position, np.array(OVERHEAD_TARGET_MM))
-    return View((0, 0, spec.width, spec.height), matrix, projection, position, BOTH)
-
-
-def on_picture(view: View, point_mm: npt.ArrayLike) -> tuple[float, float] | None:
-    """Return where a view shows a point: shares of the width and height, from the upper left.
-
-    None for a point behind the camera.
-    """
-    clip = view.projection @ view.view_matrix @ np.append(np.asarray(point_mm, float), 1.0)
-    if clip[3] <= 0.0:
-        return None
-    return float(0.5 + 0.5 * clip[0] / clip[3]), float(0.5 - 0.5 * clip[1] / clip[3])

@@ -1,6 +1,7 @@
 // Looks into the scene: turns mouse and keys into the next frame to ask for, one at a time.
 
 const start = JSON.parse(document.body.dataset.start);
+const FIXED = "fixed"; // an eye that keeps its levels
 const LETTERS = start.levels.map((level) => level[0]);
 const VIEWS = ["both", "halves", "left", "right"];
 const VIEW_NAMES = { both: "both eyes", halves: "each in its half", left: "left eye", right: "right eye" };
@@ -8,19 +9,11 @@ const TARGETS = { "both eyes": ["left", "right"], "the left eye": ["left"], "the
 const COARSE = 2; // while something moves, pictures are so many times smaller
 const REST_MS = 300; // after the last move, before the fine picture is asked for
 const DEG_PER_PX = 0.25;
+const PLAN_PX = 320; // about as wide as the scene from above is shown
 const find = (id) => document.getElementById(id);
 
 const canvas = find("picture");
-const first = () => ({
-  left: start.left,
-  right: start.right,
-  azimuth: 0,
-  elevation: 0,
-  distance: start.distance,
-  time: 0,
-  eyes: start.eyes,
-  wireframe: false,
-});
+const first = () => ({ ...start.first });
 
 let look = first();
 let target = "both eyes";
@@ -30,6 +23,8 @@ let wanted = null; // how much smaller the next picture is to be, or null
 let rest = 0;
 let playing = null; // when time began to run, and from where
 const frames = []; // when the last pictures came
+let plan = null; // the scene from above: its picture, and how far around the face it reaches
+let planning = false;
 
 const clamp = (value, low, high) => Math.min(high, Math.max(low, value));
 
@@ -38,7 +33,9 @@ function address(path, divide) {
 }
 
 async function picture(path, divide) {
-  const answer = await fetch(address(path, divide));
+  const answer = await fetch(address(path, divide)).catch(() => {
+    throw new Error("the command does not answer; start ocularist inspect again");
+  });
   if (!answer.ok) throw new Error(`${answer.status}: ${(await answer.text()).slice(0, 300)}`);
   const facts = JSON.parse(answer.headers.get("X-Inspect"));
   return [await createImageBitmap(await answer.blob()), facts];
@@ -74,7 +71,7 @@ async function run() {
       break;
     }
     if (playing !== null) {
-      look.time = Math.round(((performance.now() - playing) % 3_600_000)) / 1000;
+      look.time = Math.round((performance.now() - playing) % 3_600_000) / 1000;
       wanted ??= fine ? 1 : COARSE;
     }
   }
@@ -92,44 +89,62 @@ function show(bitmap, facts) {
   find("rate").textContent = (1000 / facts.ms).toFixed(facts.ms < 100 ? 0 : 1);
   find("ms").textContent = facts.ms.toFixed(facts.ms < 10 ? 2 : 0);
   find("triangles").textContent = facts.triangles.toLocaleString("en");
-  const [a, b] = facts.iris_px;
-  const [c, d] = facts.visible_px;
   const page = frames.length > 1 ? ((frames.length - 1) * 1000) / (now - frames[0]) : 0;
   find("where").textContent =
     `Azimuth ${look.azimuth.toFixed(0)}°, elevation ${look.elevation.toFixed(0)}°, time ${look.time.toFixed(1)} s. ` +
-    `Picture ${bitmap.width} × ${bitmap.height}: irises ${a} and ${b} px wide, ${c} and ${d} px of eye seen. ` +
-    `Left ${facts.lods[0]}, right ${facts.lods[1]}. ` +
-    (page ? `${page.toFixed(1)} pictures/s reach this page.` : "");
+    `Picture ${bitmap.width} × ${bitmap.height}` +
+    (page ? `, ${page.toFixed(1)}/s reach this page.` : ".");
+  for (const [eye, side] of ["left", "right"].entries()) {
+    find(`lod-${side}`).textContent = facts.lods[eye];
+    find(`iris-${side}`).textContent = facts.iris_px[eye].toFixed(1);
+    find(`seen-${side}`).textContent = facts.visible_px[eye].toLocaleString("en");
+  }
+  if (plan?.reach === facts.marks.reach_mm) mark(facts.marks);
+  else void above();
 }
 
 async function above() {
-  const plan = find("above");
+  if (planning) return;
+  planning = true;
+  const fault = find("above-fault");
   try {
-    const [bitmap, facts] = await picture("/overhead", 4);
-    const ink = plan.getContext("2d");
-    [plan.width, plan.height] = [bitmap.width, bitmap.height];
-    ink.drawImage(bitmap, 0, 0);
-    const at = (mark) => [mark[0] * plan.width, mark[1] * plan.height];
-    ink.strokeStyle = "#ffd24d";
-    ink.lineWidth = 1.5;
-    if (facts.marks.camera && facts.marks.eyes) {
-      ink.beginPath();
-      ink.moveTo(...at(facts.marks.camera));
-      ink.lineTo(...at(facts.marks.eyes));
-      ink.stroke();
-      ink.beginPath();
-      ink.arc(...at(facts.marks.camera), 4, 0, 7);
-      ink.stroke();
-    }
-    plan.dataset.drawn = "1";
+    const [bitmap, facts] = await picture("/overhead", clamp(Math.floor(start.size[0] / PLAN_PX), 1, 8));
+    plan = { bitmap, reach: facts.marks.reach_mm };
+    mark(facts.marks);
+    find("above").dataset.drawn = String(Number(find("above").dataset.drawn ?? 0) + 1);
+    fault.textContent = "";
   } catch (error) {
-    plan.title = String(error);
+    fault.textContent = `No picture: ${error.message}`;
   }
+  planning = false;
+}
+
+// Draw the scene from above with the camera's place, which moves while the picture stays.
+function mark(marks) {
+  const canvas = find("above");
+  const ink = canvas.getContext("2d");
+  [canvas.width, canvas.height] = [plan.bitmap.width, plan.bitmap.height];
+  ink.drawImage(plan.bitmap, 0, 0);
+  if (!marks.camera || !marks.eyes) return;
+  const at = (place) => [place[0] * canvas.width, place[1] * canvas.height];
+  canvas.dataset.camera = marks.camera.map((share) => share.toFixed(3)).join(" ");
+  ink.strokeStyle = "#ffd24d";
+  ink.lineWidth = 1.5;
+  ink.beginPath();
+  ink.moveTo(...at(marks.camera));
+  ink.lineTo(...at(marks.eyes));
+  ink.stroke();
+  ink.beginPath();
+  ink.arc(...at(marks.camera), 4, 0, 7);
+  ink.stroke();
 }
 
 function showLevels() {
   for (const select of document.querySelectorAll("select")) {
-    select.value = look[select.dataset.side][Number(select.dataset.number)];
+    const switching = look[`${select.dataset.side}_switching`];
+    const isSwitch = "switching" in select.dataset;
+    select.value = isSwitch ? switching : look[select.dataset.side][Number(select.dataset.number)];
+    select.classList.toggle("unused", !isSwitch && switching !== FIXED);
   }
   find("target").textContent = target;
   find("eyes").querySelector("span").textContent = VIEW_NAMES[look.eyes];
@@ -139,6 +154,7 @@ function showLevels() {
 }
 
 function setLevel(side, number, letter) {
+  look[`${side}_switching`] = FIXED;
   look[side] = look[side].slice(0, number) + letter + look[side].slice(number + 1);
 }
 
@@ -149,17 +165,28 @@ function step(number, by) {
   }
 }
 
-const setAll = (letter) => TARGETS[target].forEach((side) => (look[side] = letter.repeat(look[side].length)));
+function setAll(letter) {
+  for (const side of TARGETS[target]) {
+    look[`${side}_switching`] = FIXED;
+    look[side] = letter.repeat(look[side].length);
+  }
+}
+
+function nextSwitching() {
+  const now = next(start.switchings, look[`${TARGETS[target][0]}_switching`]);
+  for (const side of TARGETS[target]) look[`${side}_switching`] = now;
+}
+
 const turn = (azimuth, elevation) => {
   look.azimuth = ((look.azimuth + azimuth + 540) % 360) - 180;
-  look.elevation = clamp(look.elevation + elevation, -80, 80);
+  look.elevation = clamp(look.elevation + elevation, -start.steepest, start.steepest);
 };
 const nearer = (factor) => (look.distance = clamp(look.distance * factor, 4, start.largest));
 const next = (list, now) => list[(list.indexOf(now) + 1) % list.length];
 
+// The next farther one of the four; after the last the nearest.
 function nextDistance() {
-  const sizes = Object.values(start.distances);
-  look.distance = sizes.find((size) => size < look.distance - 0.5) ?? sizes[0];
+  look.distance = start.distances.find((size) => size < look.distance - 0.5) ?? start.distances[0];
 }
 
 function togglePlay() {
@@ -175,6 +202,7 @@ const KEYS = {
   "+": () => nearer(1.15),
   "=": () => nearer(1.15),
   "-": () => nearer(1 / 1.15),
+  b: nextSwitching,
   d: nextDistance,
   e: () => (target = next(Object.keys(TARGETS), target)),
   v: () => (look.eyes = next(VIEWS, look.eyes)),
@@ -189,8 +217,18 @@ const KEYS = {
   ...Object.fromEntries(LETTERS.map((letter) => [letter, () => setAll(letter)])),
 };
 
+// What a control needs itself while it has the focus. Everything else stays a key of the page, so
+// that a click on a button or a choice in a list ends no key's use.
+const OWN_KEYS = {
+  BUTTON: [" ", "Enter"],
+  SUMMARY: [" ", "Enter"],
+  SELECT: [" ", "Enter", "ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", ...LETTERS],
+};
+
 document.addEventListener("keydown", (event) => {
-  if (event.ctrlKey || event.altKey || event.metaKey || event.target.matches("select, button, summary")) return;
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  const own = OWN_KEYS[event.target.tagName] ?? [];
+  if (own.includes(event.key) || own.includes(event.key.toLowerCase())) return;
   const digit = /^Digit([1-7])$/.exec(event.code);
   if (digit) step(Number(digit[1]) - 1, event.shiftKey ? -1 : 1);
   else if (KEYS[event.key]) KEYS[event.key]();
@@ -210,10 +248,7 @@ canvas.addEventListener("pointermove", (event) => {
   turn(-event.movementX * DEG_PER_PX, event.movementY * DEG_PER_PX);
   moved();
 });
-canvas.addEventListener("pointerup", () => {
-  canvas.classList.remove("dragged");
-  void above();
-});
+canvas.addEventListener("lostpointercapture", () => canvas.classList.remove("dragged"));
 canvas.addEventListener(
   "wheel",
   (event) => {
@@ -226,7 +261,10 @@ canvas.addEventListener(
 
 for (const select of document.querySelectorAll("select")) {
   select.addEventListener("change", () => {
-    setLevel(select.dataset.side, Number(select.dataset.number), select.value);
+    const side = select.dataset.side;
+    if ("switching" in select.dataset) look[`${side}_switching`] = select.value;
+    else setLevel(side, Number(select.dataset.number), select.value);
+    showLevels();
     moved();
   });
 }
@@ -249,4 +287,3 @@ for (const [id, key] of [["eyes", "v"], ["wireframe", "w"], ["play", " "], ["fin
 showLevels();
 want(COARSE);
 rest = setTimeout(() => want(1), REST_MS);
-void above();

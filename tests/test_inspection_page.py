@@ -8,6 +8,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from html import unescape
 from socket import socket
 from typing import Any
 
@@ -19,10 +20,13 @@ from playwright.sync_api import Page, expect, sync_playwright
 
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
+from renderer.lod.policy import default_policy
 from study.inspection.app import create_inspection
 from study.inspection.look import Look, code_of, detail_of
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
+POLICY = default_policy()
+FIRST = Look(left="l" * 7, right="u" * 7)
 BASE = ClipSpec(left=LOW, right=ULTRA, distance="near", width=320, height=180, iris_colour="brown")
 WAIT_MS = 30_000
 
@@ -66,7 +70,11 @@ class Board:
             "iris_px": [100.0, 101.0],
             "visible_px": [1000, 1001],
             "lods": ["low", "ultra"],
-            "marks": {"camera": [0.5, 0.5], "eyes": [0.4, 0.4]},
+            "marks": {
+                "camera": [0.5 + look.azimuth / 360.0, 0.5],
+                "eyes": [0.5, 0.4],
+                "reach_mm": 1300.0 if look.distance > 100.0 else 2600.0,
+            },
         }
         return Drawn(np.full((spec.height, spec.width, 3), 90, np.uint8), facts)
 
@@ -78,13 +86,17 @@ def board() -> Board:
 
 @contextmanager
 def served(
-    board: Board, *, log_level: str = "critical", until: threading.Event | None = None
+    board: Board,
+    *,
+    log_level: str = "critical",
+    until: threading.Event | None = None,
+    first: Look = FIRST,
 ) -> Iterator[str]:
     """The page on a free port; its address. Afterwards it has ended.
 
     Nothing that the board still draws is done before ``until`` is set.
     """
-    app = create_inspection(BASE, lambda: board, hosts=("127.0.0.1",))
+    app = create_inspection(BASE, lambda: board, policy=POLICY, first=first, hosts=("127.0.0.1",))
     with socket() as listening:
         listening.bind(("127.0.0.1", 0))
         config = uvicorn.Config(
@@ -111,13 +123,20 @@ def client(board: Board) -> Iterator[httpx.Client]:
 
 def test_a_look_becomes_a_clip_of_the_command_with_these_levels() -> None:
     look = Look(left="olmhulu", right="u" * 7, eyes="halves", divide=2)
-    spec = look.spec(BASE)
+    spec = look.spec(BASE, POLICY)
     assert list(spec.left.levels().values()) == [
         *("off", "low", "medium", "high", "ultra", "low", "ultra")
     ]
     assert (spec.right, spec.distance, spec.iris_colour) == (ULTRA, "macroscopic", "brown")
     assert (spec.width, spec.height) == (160, 90)
     assert detail_of(code_of(LOW.with_levels(sclera="off"))) == LOW.with_levels(sclera="off")
+
+
+def test_an_eye_that_switches_takes_its_lod_from_the_policy() -> None:
+    spec = Look(left="l" * 7, right="m" * 7, right_switching="blended").spec(BASE, POLICY)
+    assert (spec.left, spec.right, spec.lod_policy) == (LOW, POLICY.finest, POLICY)
+    assert (spec.left_switching, spec.right_switching) == ("fixed", "blended")
+    assert Look(left="l" * 7).spec(BASE, POLICY).lod_policy is None
 
 
 def test_pictures_come_with_their_facts_from_one_thread(client: httpx.Client, board: Board) -> None:
@@ -254,6 +273,64 @@ def test_mouse_and_keys_move_the_camera_and_change_levels(page: Page, board: Boa
     assert settled(board, more_than=before) == first
 
 
+def test_d_goes_through_the_four_distances_from_near_to_far_and_round(
+    page: Page, board: Board
+) -> None:
+    settled(board, more_than=0)
+    found = []
+    for _ in range(4):
+        before = len(board.asked)
+        page.keyboard.press("d")
+        found.append(settled(board, more_than=before).distance)
+    assert found == [40.0, 12.0, 350.0, 160.0]
+
+
+def test_keys_work_after_a_click_on_a_button_or_a_choice_in_a_list(
+    page: Page, board: Board
+) -> None:
+    settled(board, more_than=0)
+    page.get_by_role("button", name="Wire frame").click()
+    before = len(board.asked)
+    page.keyboard.press("2")
+    changed = settled(board, more_than=before)
+    assert (changed.wireframe, changed.right) == (True, "uouuuuu")
+    select = page.get_by_label(f"{EFFECTS[2]}, right eye")
+    select.select_option("high")
+    select.focus()
+    before = len(board.asked)
+    page.keyboard.press("w")
+    page.keyboard.press("o")  # the list's own: it finds "off" by its letter
+    changed = settled(board, more_than=before)
+    assert (changed.wireframe, changed.left, changed.right) == (False, "lmlllll", "uoouuuu")
+    before = len(board.asked)
+    page.keyboard.press("b")
+    assert settled(board, more_than=before).left_switching == "blended"
+    before = len(board.asked)
+    page.get_by_role("button", name="medium M").click()
+    changed = settled(board, more_than=before)
+    assert (changed.left, changed.left_switching) == ("m" * 7, "fixed")
+
+
+def test_the_camera_on_the_scene_from_above_follows_every_move(page: Page) -> None:
+    above = page.locator("#above")
+    expect(above).to_have_attribute("data-camera", "0.500 0.500")
+    expect(above).to_have_attribute("data-drawn", "1")
+    page.keyboard.press("ArrowRight")
+    expect(above).to_have_attribute("data-camera", "0.514 0.500")
+    expect(above).to_have_attribute("data-drawn", "1")  # the same picture with another mark
+    page.keyboard.press("d")  # beyond what it shows
+    expect(above).to_have_attribute("data-drawn", "2")
+
+
+def test_the_page_starts_where_the_command_says(board: Board) -> None:
+    first = Look(left="h" * 7, azimuth=20.0, elevation=-5.0, time=1.5, eyes="halves")
+    with served(board, first=first) as address:
+        told = json.loads(
+            unescape(httpx.get(address, timeout=30).text.split('data-start="')[1].split('">')[0])
+        )
+    assert Look(**told["first"]) == first
+
+
 def test_a_picture_that_fails_is_told_on_the_page(page: Page, board: Board) -> None:
     settled(board, more_than=0)
     address = page.url
@@ -262,3 +339,8 @@ def test_a_picture_that_fails_is_told_on_the_page(page: Page, board: Board) -> N
     page.locator("#picture").focus()
     page.keyboard.press("ArrowLeft")
     expect(page.locator("#waiting")).to_have_text("No picture: 500: RuntimeError: gone")
+    page.route("**/overhead*", lambda route: route.abort())
+    page.keyboard.press("a")
+    expect(page.locator("#above-fault")).to_have_text(
+        "No picture: the command does not answer; start ocularist inspect again"
+    )

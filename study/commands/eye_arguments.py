@@ -20,6 +20,16 @@ def add_picture(parser: argparse.ArgumentParser) -> None:
     _add_surroundings(parser)
 
 
+def add_lod_policy(parser: argparse.ArgumentParser, *, used_by: str) -> None:
+    """Add the option that ``eye_options.policy_of`` reads."""
+    parser.add_argument(
+        "--lod-policy",
+        type=Path,
+        metavar="FILE",
+        help=f"{used_by}: another policy, as lod-policy or analyse write it",
+    )
+
+
 def _add_lods(parser: argparse.ArgumentParser) -> None:
     from renderer.clip import PRESETS
     from renderer.detail import LEVELS

@@ -15,6 +15,7 @@ from study.commands.values import reading
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
     from renderer.detail import Detail
+    from renderer.lod.choice import LodPolicy
 
 SIDES: Final = ("left", "right")
 
@@ -66,6 +67,20 @@ def viewpoint_of(options: argparse.Namespace, spec: ClipSpec) -> dict[str, float
         "elevation_deg": options.elevation,
         "time_s": spec.time_s(frame),
     }
+
+
+def policy_of(path: Path | None) -> LodPolicy:
+    """Return the policy of a file, Ocularist's own without one."""
+    from renderer.lod.policy import default_policy, read_policy
+
+    if path is None:
+        return default_policy()
+    try:
+        return read_policy(path).policy
+    except OSError as error:
+        raise CommandError(f"--lod-policy: {path}: {error.strerror}") from None
+    except ValueError as error:
+        raise CommandError(f"--lod-policy: {error}") from None
 
 
 def _surroundings(options: argparse.Namespace) -> dict[str, Any]:

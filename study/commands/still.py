@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from study.commands.errors import CommandError
-from study.commands.eye_arguments import add_picture
-from study.commands.eye_options import spec_of, viewpoint_of
+from study.commands.eye_arguments import add_lod_policy, add_picture
+from study.commands.eye_options import policy_of, spec_of, viewpoint_of
 from study.commands.places import new_file
 from study.commands.values import number
 
@@ -44,12 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=("blended", "instant"),
         help="take both eyes' LoDs from their size in pixels, by Ocularist's own policy",
     )
-    parser.add_argument(
-        "--lod-policy",
-        type=Path,
-        metavar="FILE",
-        help="with --switching or --view crowd: another policy, as lod-policy or analyse write it",
-    )
+    add_lod_policy(parser, used_by="with --switching or --view crowd")
     parser.add_argument(
         "--view",
         choices=VIEWS,
@@ -79,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
         _check_group(options)
     elif options.lod_policy is not None and options.switching is None:
         raise CommandError("--lod-policy: says where eyes switch; add --switching, or --view crowd")
-    policy = _policy(options.lod_policy)
+    policy = policy_of(options.lod_policy)
     spec = _by_size(spec_of(options), options, policy)
 
     from renderer.still import write_still
@@ -128,17 +122,3 @@ def _by_size(spec: ClipSpec, options: argparse.Namespace, policy: LodPolicy) -> 
         right_switching=options.switching,
         lod_policy=policy,
     )
-
-
-def _policy(path: Path | None) -> LodPolicy:
-    """Return the policy of a file, Ocularist's own without one."""
-    from renderer.lod.policy import default_policy, read_policy
-
-    if path is None:
-        return default_policy()
-    try:
-        return read_policy(path).policy
-    except OSError as error:
-        raise CommandError(f"--lod-policy: {path}: {error.strerror}") from None
-    except ValueError as error:
-        raise CommandError(f"--lod-policy: {error}") from None

@@ -23,7 +23,8 @@ from starlette.middleware.trustedhost import TrustedHostMiddleware
 from renderer.camera import IRIS_PX
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, LEVELS
-from study.inspection.look import LARGEST_PX, Look, code_of
+from renderer.lod.choice import SWITCHINGS, LodPolicy
+from study.inspection.look import LARGEST_PX, STEEPEST_DEG, Look
 from study.site.headers import SecureHeaders
 from study.site.resources import resource_folder
 
@@ -61,13 +62,19 @@ class Draughtsman(Protocol):
 
 
 def create_inspection(
-    base: ClipSpec, make: Callable[[], Draughtsman], *, hosts: tuple[str, ...]
+    base: ClipSpec,
+    make: Callable[[], Draughtsman],
+    *,
+    policy: LodPolicy,
+    first: Look,
+    hosts: tuple[str, ...],
 ) -> FastAPI:
     """Build the page's application.
 
     ``base`` holds what the page leaves alone; ``make`` is called once, in the thread that draws;
-    ``hosts`` are the names under which the page may be asked for: no other site's page can reach
-    in under a name of its own.
+    eyes that switch do so by ``policy``; ``first`` is what the page shows first. ``hosts`` are the
+    names under which the page may be asked for: no other site's page can reach in under a name of
+    its own.
     """
     thread = ThreadPoolExecutor(1, thread_name_prefix="inspect")
     held: list[Draughtsman] = []
@@ -108,25 +115,28 @@ def create_inspection(
     @app.get("/")
     async def page(request: Request) -> HTMLResponse:
         start = {
-            "effects": EFFECTS,
+            "first": first.model_dump(exclude={"divide"}),
             "levels": LEVELS,
-            "distances": IRIS_PX,
+            "switchings": SWITCHINGS,
+            "distances": sorted(IRIS_PX.values(), reverse=True),
             "largest": LARGEST_PX,
-            "distance": IRIS_PX[base.distance],
-            "eyes": "halves" if base.distance == "macroscopic" else "both",
-            "left": code_of(base.left),
-            "right": code_of(base.right),
+            "steepest": STEEPEST_DEG,
             "size": [base.width, base.height],
         }
-        context = {"start": start, "effects": EFFECTS, "levels": LEVELS}
+        context = {
+            "start": start,
+            "effects": EFFECTS,
+            "levels": LEVELS,
+            "switchings": SWITCHINGS,
+        }
         return templates.TemplateResponse(request, "inspect/page.html", context)
 
     @app.get("/frame")
     async def frame(look: Annotated[Look, Query()]) -> Response:
-        return await drawn(lambda who: who.shot(look.spec(base), look))
+        return await drawn(lambda who: who.shot(look.spec(base, policy), look))
 
     @app.get("/overhead")
     async def overhead(look: Annotated[Look, Query()]) -> Response:
-        return await drawn(lambda who: who.overhead(look.spec(base), look))
+        return await drawn(lambda who: who.overhead(look.spec(base, policy), look))
 
     return app

@@ -10,12 +10,14 @@ import moderngl
 import numpy as np
 import pytest
 
+from renderer.camera import View, radius_of_px
 from renderer.clip import ClipSpec
 from renderer.crowd.stage import FRONT, STAGE
 from renderer.detail import Detail
 from renderer.frame.frame import FrameRenderer
 from renderer.gl.context import identify
-from renderer.inspection import Inspector, Viewpoint, at_least_as_sharp, on_picture, overhead_view
+from renderer.inspection import Inspector, Viewpoint, at_least_as_sharp
+from renderer.overhead import on_picture, overhead_view, reach_mm
 from renderer.scene import Scene
 
 LOW = Detail.uniform("low")
@@ -70,8 +72,12 @@ def test_one_eye_alone_has_the_whole_picture(inspector: Inspector) -> None:
     assert left.visible_px[0] >= both.visible_px[0] > 0
 
 
+def above(spec: ClipSpec, viewpoint: Viewpoint) -> View:
+    return overhead_view(spec, reach_mm=reach_mm(radius_of_px(viewpoint.distance_px)))
+
+
 def test_the_scene_from_above_shows_the_person_where_it_says(inspector: Inspector) -> None:
-    view = overhead_view(SPEC)
+    view = above(SPEC, Viewpoint())
     seen = inspector.overhead(SPEC, Viewpoint())
     place = on_picture(view, (0.0, -50.0, -80.0))
     assert place is not None
@@ -84,9 +90,12 @@ def test_the_scene_from_above_shows_the_person_where_it_says(inspector: Inspecto
     assert on_picture(view, 2.0 * view.position_mm) is None
 
 
-def test_the_scene_from_above_shows_those_whom_only_the_eyes_see(inspector: Inspector) -> None:
+def test_the_scene_from_above_shows_those_whom_only_the_eyes_see(
+    inspector: Inspector, monkeypatch: pytest.MonkeyPatch
+) -> None:
     alone, together = (replace(SPEC, crowd=crowd) for crowd in (0, 5))
-    view = overhead_view(SPEC)
+    monkeypatch.setattr("renderer.overhead.members", lambda _crowd: STAGE)  # one camera for both
+    view = above(together, Viewpoint())
     amid = Viewpoint(time_s=FRONT.centre_s)  # the walker passes the face
     empty, seen = (inspector.overhead(spec, amid).pixels for spec in (alone, together))
     changed = np.abs(seen.astype(int) - empty).max(axis=-1) > 40
