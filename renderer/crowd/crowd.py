@@ -18,11 +18,11 @@ from renderer.clip import ClipSpec
 from renderer.crowd.bodies import build_figures
 from renderer.crowd.culling import in_view
 from renderer.crowd.eyes import CrowdEyes, DrawnEye
-from renderer.crowd.figures import Troupe
 from renderer.crowd.shadows import CrowdShadows
 from renderer.crowd.shares import light_shares
 from renderer.crowd.skinned import SkinnedFigures, eyes_last, joined_triangles
 from renderer.crowd.stage import STAGE, Member, members
+from renderer.crowd.troupe import Troupe
 from renderer.frame.outlines import BYSTANDER, Outlines
 from renderer.gl.program import build_program
 from renderer.light import Light

@@ -18,8 +18,8 @@ import numpy.typing as npt
 from renderer.crowd.eye_groups import EyeGroups, Kind
 from renderer.crowd.figures import Figure
 from renderer.crowd.gaze import CrowdGaze, iris_px
-from renderer.crowd.skeletons import Floats
 from renderer.crowd.sockets import Socket, sockets
+from renderer.crowd.turns import Floats
 from renderer.detail import Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.sunlight import rims_table

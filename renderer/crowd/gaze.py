@@ -12,13 +12,15 @@ import numpy.typing as npt
 from renderer.camera import IRIS_DIAMETER_MM, LIMBUS_Z_MM
 from renderer.crowd.figure import BONES
 from renderer.crowd.figures import Figure
-from renderer.crowd.skeletons import Floats, turns_about
 from renderer.crowd.sockets import Socket
+from renderer.crowd.turns import Floats, Hinges
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 
 HEAD: Final = BONES.index("head")
 YAW_DEG: Final = 28.0  # farther aside people turn their heads
 PITCH_DEG: Final = 16.0
+_YAW: Final = Hinges([0.0, 1.0, 0.0])
+_PITCH: Final = Hinges([-1.0, 0.0, 0.0])  # upwards
 _BEHIND: Final = -0.1  # cosine: eyes that look this far away from the camera are not seen
 
 
@@ -55,8 +57,8 @@ class CrowdGaze:
         turn = heads[:, :3, :3] / self.scale[:, None, None]
         centre = np.einsum("eij,ej->ei", heads[:, :3, :3], self.centres_mm) + heads[:, :3, 3]
         aside_deg = self._aside(turn, centre)
-        turn = turn @ turns_about([0.0, 1.0, 0.0], aside_deg[:, 0])
-        turn = turn @ turns_about([1.0, 0.0, 0.0], -aside_deg[:, 1])
+        yaw, pitch = np.radians(aside_deg).T
+        turn = turn @ _YAW.turns(yaw) @ _PITCH.turns(pitch)
         found = np.zeros((len(turn), 4, 4))
         found[:, :3, :3], found[:, 3, 3] = turn, 1.0
         # Our globe lies as far forwards in the wider socket as its front does.

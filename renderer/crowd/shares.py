@@ -15,6 +15,7 @@ from renderer.crowd.figure import BONES
 from renderer.crowd.figures import Figure
 from renderer.crowd.occlusion import cone_directions, openness, visibility
 from renderer.crowd.stage import Member
+from renderer.crowd.troupe import Troupe
 
 Floats = npt.NDArray[np.float64]
 
@@ -60,7 +61,7 @@ def _posed(figure: Figure) -> tuple[Floats, Floats]:
     body = figure.body
     full = np.zeros((len(body.positions_mm), len(BONES)))
     np.add.at(full, (np.arange(len(full))[:, None], body.bones), body.weights)
-    transforms = figure.bones(0.0)
+    transforms = Troupe((figure,)).bones(0.0)[0]
     positions = skin_vertices(body.positions_mm, transforms, weights=full)
     turns = transforms.copy()
     turns[:, :3, 3] = 0.0

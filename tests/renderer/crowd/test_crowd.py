@@ -11,6 +11,7 @@ from renderer.crowd.figure import BONES
 from renderer.crowd.people import PEOPLE
 from renderer.crowd.shares import light_shares
 from renderer.crowd.stage import GROUND_MM, STAGE
+from renderer.crowd.troupe import Troupe
 from renderer.detail import Detail
 from renderer.light import Light, Sky
 
@@ -69,7 +70,8 @@ def test_the_gpu_skins_as_numpy_does(crowd) -> None:
     body = figure.body
     full = np.zeros((len(body.positions_mm), len(BONES)))
     np.add.at(full, (np.arange(len(full))[:, None], body.bones), body.weights)
-    expected = skin_vertices(body.positions_mm, figure.bones(1.7), weights=full)
+    bones = Troupe((figure,)).bones(1.7)[0]
+    expected = skin_vertices(body.positions_mm, bones, weights=full)
     posed = crowd.vertices(1.7)
     found = posed[figure.first_vertex : figure.first_vertex + len(expected)]
     np.testing.assert_allclose(found[:, :3], expected, atol=0.05)

@@ -20,12 +20,13 @@ from renderer.crowd.eye_groups import (
     crowd_mesh,
 )
 from renderer.crowd.eyes import PAINTED_PX
-from renderer.crowd.figures import Figure, Troupe
+from renderer.crowd.figures import Figure
 from renderer.crowd.formation import CAMERA_MM, formation, group_view
 from renderer.crowd.gaze import CrowdGaze
 from renderer.crowd.group import GroupRenderer
 from renderer.crowd.sockets import AWAKE_MM, sockets
 from renderer.crowd.stage import members
+from renderer.crowd.troupe import Troupe
 from renderer.detail import STANDARD_LODS, Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
 from renderer.eye.caustics import caustic_map

@@ -13,7 +13,7 @@ from renderer.crowd.cast import CAST, TEMPLATES
 from renderer.crowd.crowd import Crowd
 from renderer.crowd.culling import in_view
 from renderer.crowd.eye_groups import IRISES
-from renderer.crowd.figures import Figure, Troupe
+from renderer.crowd.figures import Figure
 from renderer.crowd.stage import CIRCLE, STAGE, members
 from renderer.detail import Detail
 from renderer.light import Light, Sky
@@ -82,15 +82,6 @@ def test_eight_meshes_dress_thirty_people(figures: tuple[Figure, ...]) -> None:
         assert (surface[:, :3] >= 0).all()
         top = (np.abs(surface[:, :3] - figure.member.person.top) < 1e-9).all(axis=1)
         assert top.sum() > 200
-
-
-def test_a_troupe_stands_as_each_figure_alone(figures: tuple[Figure, ...]) -> None:
-    together = Troupe(figures).bones(1.3)
-    for number in (0, 1, 4, 9, 28):
-        alone = figures[number].bones(1.3)
-        np.testing.assert_allclose(together[number], alone, atol=1e-9)
-    soles = together[:, :, 1, 3]
-    assert np.isfinite(soles).all()
 
 
 def test_a_sphere_is_culled_only_when_it_is_wholly_outside() -> None:
