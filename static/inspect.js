@@ -9,6 +9,8 @@ const TARGETS = { "both eyes": ["left", "right"], "the left eye": ["left"], "the
 const COARSE = 2; // while something moves, pictures are so many times smaller
 const REST_MS = 300; // after the last move, before the fine picture is asked for
 const DEG_PER_PX = 0.25;
+const IRIS_MM = 11.7;
+const ALONE_MM = 40; // from an eye's centre to the other one's corner, and a little less
 const PLAN_PX = 320; // about as wide as the scene from above is shown
 const find = (id) => document.getElementById(id);
 
@@ -181,12 +183,28 @@ const turn = (azimuth, elevation) => {
   look.azimuth = ((look.azimuth + azimuth + 540) % 360) - 180;
   look.elevation = clamp(look.elevation + elevation, -start.steepest, start.steepest);
 };
-const nearer = (factor) => (look.distance = clamp(look.distance * factor, 4, start.largest));
+const nearer = (factor) => goTo(clamp(look.distance * factor, 4, start.largest));
 const next = (list, now) => list[(list.indexOf(now) + 1) % list.length];
+
+// An eye is alone in its half, or in the picture, while nothing of the other one comes into view.
+function isAlone(eyes, distance) {
+  const half = (start.size[0] / start.size[1]) * 540 * (eyes === "halves" ? 0.5 : 1);
+  return (half * IRIS_MM) / distance < ALONE_MM;
+}
+
+function goTo(distance) {
+  look.distance = distance;
+  if (look.eyes !== "both" && !isAlone(look.eyes, distance)) look.eyes = "both";
+}
 
 // The next farther one of the four; after the last the nearest.
 function nextDistance() {
-  look.distance = start.distances.find((size) => size < look.distance - 0.5) ?? start.distances[0];
+  goTo(start.distances.find((size) => size < look.distance - 0.5) ?? start.distances[0]);
+}
+
+function nextView() {
+  look.eyes = next(VIEWS, look.eyes);
+  if (look.eyes !== "both" && !isAlone(look.eyes, look.distance)) look.distance = start.distances[0];
 }
 
 function togglePlay() {
@@ -205,7 +223,7 @@ const KEYS = {
   b: nextSwitching,
   d: nextDistance,
   e: () => (target = next(Object.keys(TARGETS), target)),
-  v: () => (look.eyes = next(VIEWS, look.eyes)),
+  v: nextView,
   w: () => (look.wireframe = !look.wireframe),
   f: () => (fine = !fine),
   r: () => {

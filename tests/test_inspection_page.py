@@ -277,12 +277,19 @@ def test_d_goes_through_the_four_distances_from_near_to_far_and_round(
     page: Page, board: Board
 ) -> None:
     settled(board, more_than=0)
-    found = []
-    for _ in range(4):
+
+    def after(key: str) -> tuple[float, str]:
         before = len(board.asked)
-        page.keyboard.press("d")
-        found.append(settled(board, more_than=before).distance)
-    assert found == [40.0, 12.0, 350.0, 160.0]
+        page.keyboard.press(key)
+        seen = settled(board, more_than=before)
+        return seen.distance, seen.eyes
+
+    assert [after("d")[0] for _ in range(4)] == [40.0, 12.0, 350.0, 160.0]
+    # From afar the other eye would be in an eye's half, too.
+    after("d")
+    assert after("v") == (350.0, "halves")
+    assert after("d") == (160.0, "halves")
+    assert after("d") == (40.0, "both")
 
 
 def test_keys_work_after_a_click_on_a_button_or_a_choice_in_a_list(
