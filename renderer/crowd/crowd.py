@@ -24,6 +24,7 @@ from renderer.crowd.skinned import SkinnedFigures, eyes_last, joined_triangles
 from renderer.crowd.stage import STAGE, Member, members
 from renderer.crowd.troupe import Troupe
 from renderer.frame.outlines import BYSTANDER, Outlines
+from renderer.gl.index_ranges import adjoined
 from renderer.gl.program import build_program
 from renderer.light import Light
 from renderer.lod.choice import LodPolicy
@@ -89,7 +90,7 @@ class Crowd:
     def vertices(self, time_s: float) -> npt.NDArray[np.float32]:
         """Return everybody's vertices at a time: positions in mm and normals, (n, 6)."""
         self.pose(time_s)
-        self._skin(range(len(self.figures)))
+        self.skin(range(len(self.figures)))
         return self._meshes.vertices()
 
     def draw(
@@ -125,7 +126,6 @@ class Crowd:
         )
         if self._eyes and self.eyes_drawn:
             self._eyes.draw(
-                self.eyes_drawn,
                 light=self.light,
                 view_matrix=view_matrix,
                 projection=projection,
@@ -169,38 +169,49 @@ class Crowd:
         Those who are ``eyeless`` get real eyes from elsewhere, so the painted ones are left out.
         Alpha is coverage or, where it ``is_marked``, tells their parts.
         """
-        self._skin(numbers)
+        self.skin(numbers)
+        self.light_figures(projection=projection, camera_mm=camera_mm, is_marked=is_marked)
+        self.draw_lit(numbers, view_matrix=view_matrix, eyeless=eyeless)
+
+    def light_figures(
+        self,
+        *,
+        projection: npt.NDArray[np.floating],
+        camera_mm: npt.NDArray[np.floating],
+        is_marked: bool = False,
+    ) -> None:
+        """Set what all views to come share (see ``draw_figures``)."""
         self._program.set(
-            u_view_matrix=view_matrix,
             u_projection=projection,
             u_camera_mm=camera_mm,
             u_marked=float(is_marked),
             **self.light.uniforms(),
         )
-        self._render(self._vertices, numbers, eyeless)
 
-    def draw_shadows(
+    def draw_lit(
         self,
         numbers: Sequence[int],
         *,
         view_matrix: npt.NDArray[np.floating],
-        projection: npt.NDArray[np.floating],
+        eyeless: Collection[int] = (),
     ) -> None:
-        """Draw the figures' shadows on the ground as premultiplied coverage."""
-        self._skin(numbers)
-        self._shadows.draw(
-            numbers, sky=self.light.sky, view_matrix=view_matrix, projection=projection
-        )
+        """Draw figures that are skinned, in the light that ``light_figures`` set."""
+        self._program.set(u_view_matrix=view_matrix)
+        self._render(self._vertices, numbers, eyeless)
 
     def _render(
         self, vertices: moderngl.VertexArray, numbers: Sequence[int], eyeless: Collection[int]
     ) -> None:
-        for number in numbers:
-            first, count = self._index_ranges[number]
-            count = self._without_eyes[number] if number in eyeless else count
+        ranges = (
+            (first, self._without_eyes[number] if number in eyeless else count)
+            for number in numbers
+            for first, count in [self._index_ranges[number]]
+        )
+        for first, count in adjoined(ranges):
             vertices.render(moderngl.TRIANGLES, vertices=count, first=first)
 
-    def _skin(self, numbers: Sequence[int]) -> None:
+    def skin(self, numbers: Sequence[int]) -> None:
+        """Skin figures by number for the last ``pose``, who are not yet."""
         missing = [number for number in numbers if number not in self._skinned]
         if missing:
             self._meshes.skin(missing, self._bones)
@@ -236,7 +247,7 @@ class Crowd:
             [(self._meshes.posed, "3f 12x", "p_world"), (surfaces, "24x 1f", "in_mark")],
             index,
         )
-        self._shadows = CrowdShadows(gl, self._meshes)
+        self.shadows = CrowdShadows(gl, self._meshes)
         if static_cube:
             self._eyes = CrowdEyes(
                 gl, figures, shares=shares, static_cube=static_cube, policy=self._policy

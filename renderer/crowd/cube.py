@@ -1,12 +1,14 @@
 """The dynamic cube map: the moving people as the main character's eyes see them, every frame.
 
 Centred midway between the eyes. Radiance is premultiplied by coverage, so the reflection is this
-cube over the static one. Only the rectangles that people or their shadows touch, now or in the
-frame before, are cleared and drawn.
+cube over the static one. Software GL clears and draws only the rectangles that people or their
+shadows touch, now or in the frame before; on a GPU Python would take longer to tell them than
+faces take to draw whole.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import moderngl
@@ -15,17 +17,30 @@ import numpy.typing as npt
 
 from renderer.camera import perspective
 from renderer.crowd.crowd import Crowd
+from renderer.crowd.cube_tiles import TILES, Bools, cover, touched
 from renderer.crowd.stage import GROUND_MM
-from renderer.park.cube_faces import FACE_AXES, face_view
+from renderer.gl.context import chooses_parts
+from renderer.park.cube_faces import face_view
 from renderer.park.cube_target import CubeTarget, Rectangle
 
 Floats = npt.NDArray[np.float64]
-Tiles = npt.NDArray[np.bool_]
 
 NEAR_MM: Final = 150.0
 FAR_MM: Final = 30000.0
 LEVELS: Final = 5  # a 350-pixel iris reads about every eleventh texel of 2048
-TILES: Final = 16  # a face is cleared and halved in tiles, 16 x 16 of them
+FACE_VIEWS: Final = tuple(face_view(face) for face in range(6))
+_PROJECTION: Final = perspective(90.0, 1.0, NEAR_MM, FAR_MM)
+_CENTRE_MM: Final = np.zeros(3)
+
+
+@dataclass(frozen=True)
+class _FaceDraw:
+    """Who is seen on a face, who casts a shadow there, and what of it is cleared (None: all)."""
+
+    face: int
+    seen: list[int]
+    cast: list[int]
+    clear: list[Rectangle] | None = None
 
 
 class CrowdCube:
@@ -36,7 +51,7 @@ class CrowdCube:
         self.size = size
         self.crowd = crowd
         self._cube = CubeTarget(gl, size, levels=min(LEVELS, size.bit_length()), depth=True)
-        self._projection = perspective(90.0, 1.0, NEAR_MM, FAR_MM)
+        self._chooses = chooses_parts(gl)
         self._drawn = np.zeros((6, TILES, TILES), dtype=bool)
         for face in range(6):
             self._cube.attach(face).clear(0.0, 0.0, 0.0, 0.0)
@@ -49,43 +64,51 @@ class CrowdCube:
 
     def render(self, time_s: float) -> None:
         """Draw everybody at a scene time; binds targets of its own and leaves them bound."""
-        self.crowd.pose(time_s)
-        bodies = self.crowd.bounds_mm()
-        if not bodies and not self._drawn.any():
+        if not self.crowd.figures:
             return
-        owners = np.repeat(np.arange(len(bodies)), [len(reach) for _, reach in bodies])
-        points = np.concatenate([np.zeros((0, 3)), *(centres for centres, _ in bodies)])
-        reach_mm = np.concatenate([np.zeros(0), *(reach for _, reach in bodies)])
-        on_ground = self._on_ground(points)
-        stale, self._drawn = self._drawn, np.zeros_like(self._drawn)
-        changed: list[tuple[int, Rectangle]] = []
-        for face in range(6):
-            seen = tiles_of_each(points, reach_mm, face, owners=owners, count=len(bodies))
-            cast = tiles_of_each(on_ground, reach_mm, face, owners=owners, count=len(bodies))
-            self._drawn[face] = (seen | cast).any(axis=0)
-            rectangles = self._rectangles(stale[face] | self._drawn[face])
-            changed += [(face, rectangle) for rectangle in rectangles]
-            if rectangles:
-                self._draw_face(face, rectangles, seen=_present(seen), cast=_present(cast))
-        self._cube.build_levels(changed)
+        self.crowd.pose(time_s)
+        draws = self._chosen_draws() if self._chooses else self._all_draws()
+        self.crowd.skin(sorted({number for draw in draws for number in (*draw.seen, *draw.cast)}))
+        self.crowd.light_figures(projection=_PROJECTION, camera_mm=_CENTRE_MM)
+        self.crowd.shadows.light(self.crowd.light.sky, projection=_PROJECTION)
+        for draw in draws:
+            self._draw(draw)
+        self._cube.build_levels([(draw.face, part) for draw in draws for part in draw.clear or ()])
 
-    def _draw_face(
-        self, face: int, clear: list[Rectangle], *, seen: list[int], cast: list[int]
-    ) -> None:
-        target = self._cube.attach(face)
-        for rectangle in clear:
-            target.scissor = rectangle
-            target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
-        target.scissor = (0, 0, self.size, self.size)
-        view = face_view(face).astype(np.float32)
+    def _draw(self, draw: _FaceDraw) -> None:
+        target = self._cube.attach(draw.face)
+        for viewport in [None] if draw.clear is None else draw.clear:
+            target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0, viewport=viewport)
+        view = FACE_VIEWS[draw.face]
         self.gl.enable_only(moderngl.NOTHING)
-        self.crowd.draw_shadows(cast, view_matrix=view, projection=self._projection)
+        self.crowd.shadows.draw(draw.cast, view_matrix=view)
         self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        self.crowd.draw_figures(
-            seen, view_matrix=view, projection=self._projection, camera_mm=np.zeros(3)
-        )
+        self.crowd.draw_lit(draw.seen, view_matrix=view)
 
-    def _rectangles(self, tiles: Tiles) -> list[Rectangle]:
+    def _all_draws(self) -> list[_FaceDraw]:
+        everybody = list(range(len(self.crowd.figures)))
+        return [_FaceDraw(face, everybody, everybody) for face in range(6)]
+
+    def _chosen_draws(self) -> list[_FaceDraw]:
+        """Return what to draw of each face that people or shadows touch, or did."""
+        centres, reaches = zip(*self.crowd.bounds_mm(), strict=True)
+        points, reach_mm = np.concatenate(centres), np.concatenate(reaches)
+        starts = np.cumsum([0, *map(len, [*reaches, *reaches])])[:-1]
+        found = touched(
+            np.concatenate([points, self._on_ground(points)]),
+            np.concatenate([reach_mm, reach_mm]),
+            near_mm=NEAR_MM,
+        )
+        who = np.logical_or.reduceat(found.spheres, starts, axis=1).reshape(6, 2, len(reaches))
+        stale, self._drawn = self._drawn, found.tiles
+        changed = stale | self._drawn
+        draws = []
+        for face in np.flatnonzero(changed.any(axis=(1, 2))).tolist():
+            seen, cast = (np.flatnonzero(some).tolist() for some in who[face])
+            draws.append(_FaceDraw(face, seen, cast, self._rectangles(changed[face])))
+        return draws
+
+    def _rectangles(self, tiles: Bools) -> list[Rectangle]:
         side = self.size / TILES
         return [
             (round(x * side), round(y * side), round(width * side), round(height * side))
@@ -99,61 +122,3 @@ class CrowdCube:
         grounded = points - fall[:, None] * sun
         grounded[:, 1] = GROUND_MM
         return np.asarray(grounded)
-
-
-def touched_tiles(points: Floats, reach_mm: Floats, face: int) -> Tiles:
-    """Return which tiles (row, column) of a face spheres around points (n, 3) may touch."""
-    owners = np.zeros(len(points), dtype=np.int64)
-    return np.asarray(tiles_of_each(points, reach_mm, face, owners=owners, count=1)[0])
-
-
-def tiles_of_each(
-    points: Floats, reach_mm: Floats, face: int, *, owners: npt.NDArray[np.int64], count: int
-) -> Tiles:
-    """Return which tiles (owner, row, column) of a face the spheres of each owner may touch."""
-    right, down, forward = (points @ FACE_AXES[face]).T
-    # A sphere touches the face's pyramid only if it reaches over all four of its side planes.
-    slack = reach_mm * 2**0.5
-    inside = (forward - np.abs(right) > -slack) & (forward - np.abs(down) > -slack)
-    inside &= forward > NEAR_MM - reach_mm
-    near = np.maximum(forward - reach_mm, NEAR_MM)[inside]
-    far = np.maximum(forward + reach_mm, NEAR_MM)[inside]
-    low, high = [], []
-    for across in (right[inside], down[inside]):
-        start, end = across - reach_mm[inside], across + reach_mm[inside]
-        low.append(np.minimum(start / near, start / far))
-        high.append(np.maximum(end / near, end / far))
-    left, bottom = np.floor((np.clip(low, -1, 1) * 0.5 + 0.5) * TILES).astype(int)
-    end_x, end_y = np.ceil((np.clip(high, -1, 1) * 0.5 + 0.5) * TILES).astype(int)
-    # Rectangles are summed up from their corners: steps in at one end, out at the other.
-    steps = np.zeros((count, TILES + 1, TILES + 1), dtype=np.int64)
-    owner = owners[inside]
-    for y, x, step in (
-        (bottom, left, 1),
-        (bottom, end_x, -1),
-        (end_y, left, -1),
-        (end_y, end_x, 1),
-    ):
-        np.add.at(steps, (owner, y, x), step)
-    return np.asarray(steps.cumsum(axis=1).cumsum(axis=2)[:, :TILES, :TILES] > 0)
-
-
-def cover(tiles: Tiles) -> list[Rectangle]:
-    """Return disjoint rectangles (x, y, width, height) in tiles that cover the true ones."""
-    left = tiles.copy()
-    found: list[Rectangle] = []
-    for y, x in np.argwhere(tiles).tolist():
-        if not left[y, x]:
-            continue
-        width = height = 1
-        while x + width < left.shape[1] and left[y, x + width]:
-            width += 1
-        while y + height < left.shape[0] and left[y + height, x : x + width].all():
-            height += 1
-        left[y : y + height, x : x + width] = False
-        found.append((x, y, width, height))
-    return found
-
-
-def _present(tiles: Tiles) -> list[int]:
-    return [int(number) for number in np.flatnonzero(tiles.any(axis=(1, 2)))]

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from renderer.crowd.skinned import SkinnedFigures, joined_triangles
 from renderer.crowd.stage import GROUND_MM
+from renderer.gl.index_ranges import adjoined
 from renderer.gl.program import build_program
 from renderer.light import Sky
 
@@ -27,24 +28,19 @@ class CrowdShadows:
             self._program.gl_program, [(meshes.posed, "3f 3x4", "p_world")], gl.buffer(content)
         )
 
-    def draw(
-        self,
-        numbers: Sequence[int],
-        *,
-        sky: Sky,
-        view_matrix: npt.NDArray[np.floating],
-        projection: npt.NDArray[np.floating],
-    ) -> None:
-        """Draw the shadows of figures that are skinned, as premultiplied coverage."""
+    def light(self, sky: Sky, *, projection: npt.NDArray[np.floating]) -> None:
+        """Set what the shadows of all views to come share."""
         self._program.set(
-            u_view_matrix=view_matrix,
             u_projection=projection,
             u_sun_direction=sky.sun_direction,
             u_ground_mm=GROUND_MM,
             u_shade=sun_share(sky),
         )
-        for number in numbers:
-            first, count = self._ranges[number]
+
+    def draw(self, numbers: Sequence[int], *, view_matrix: npt.NDArray[np.floating]) -> None:
+        """Draw the shadows of figures that are skinned, as premultiplied coverage."""
+        self._program.set(u_view_matrix=view_matrix)
+        for first, count in adjoined(self._ranges[number] for number in numbers):
             self._vertices.render(moderngl.TRIANGLES, vertices=count, first=first)
 
 

@@ -11,6 +11,7 @@ from typing import Final
 
 import moderngl
 
+from renderer.gl.context import chooses_parts
 from renderer.gl.functions import gl_function
 from renderer.park.cube_faces import FACES
 
@@ -54,48 +55,68 @@ class CubeTarget:
         )
         # moderngl wants a colour attachment of its own; a face takes its place at once.
         self._stand_in = gl.renderbuffer((size, size), 4, dtype="f2")
-        self._target = self._make_target(depth=depth)
-        self._small = self._make_target(depth=False) if depth else self._target
-        self._source = self._make_target(depth=False) if levels > 1 else self._target
+        self._depth = gl.depth_renderbuffer((size, size)) if depth else None
+        self._targets: dict[tuple[int, int], moderngl.Framebuffer] = {}
+        self._halves_parts = chooses_parts(gl)
 
     def attach(self, face: int, *, level: int = 0) -> moderngl.Framebuffer:
         """Make a face and level the target, with viewport and scissor over all of it."""
-        target = self._target if level == 0 else self._small
+        target = self._target(face, level)
         target.use()
-        _attach(_FRAMEBUFFER, face, self.texture.glo, level)
-        check = gl_function("glCheckFramebufferStatus", ctypes.c_uint, result=ctypes.c_uint)
-        status = check(_FRAMEBUFFER)
+        target.scissor = target.viewport
+        return target
+
+    def build_levels(self, rectangles: Iterable[tuple[int, Rectangle]] | None = None) -> None:
+        """Fill the smaller levels by halving, all or below rectangles (face, (x, y, w, h)).
+
+        A GPU always fills all: that takes it less than being told of parts.
+        """
+        if self.levels == 1:
+            return
+        if not self._halves_parts:
+            self.texture.build_mipmaps(0, self.levels - 1)
+            return
+        whole = [(face, (0, 0, self.size, self.size)) for face in range(6)]
+        parts: dict[int, list[Rectangle]] = {}
+        for face, rectangle in whole if rectangles is None else rectangles:
+            parts.setdefault(face, []).append(rectangle)
+        for face, own in parts.items():
+            self._halve(face, own)
+
+    def _halve(self, face: int, parts: list[Rectangle]) -> None:
+        """Fill a face's levels below parts with means of 2 x 2 texels: bilinear blits to half."""
+        integer, word = ctypes.c_int, ctypes.c_uint
+        bind = gl_function("glBindFramebuffer", word, word)
+        blit = gl_function("glBlitFramebuffer", *[integer] * 8, word, word)
+        # Below level 1 a pixel costs less than another call.
+        joined = [_union(parts)]
+        for level in range(1, self.levels):
+            source = self._target(face, level - 1)  # making it would bind it, so it comes first
+            self.attach(face, level=level)
+            bind(_READ_FRAMEBUFFER, source.glo)
+            for part in parts if level == 1 else joined:
+                ends = _shrunk(part, level, self.size >> level)
+                blit(*(2 * end for end in ends), *ends, _COLOR_BUFFER_BIT, _LINEAR)
+
+    def _target(self, face: int, level: int) -> moderngl.Framebuffer:
+        if (face, level) not in self._targets:
+            self._targets[face, level] = self._make_target(face, level)
+        return self._targets[face, level]
+
+    def _make_target(self, face: int, level: int) -> moderngl.Framebuffer:
+        target = self.gl.framebuffer([self._stand_in], None if level else self._depth)
+        target.use()
+        word = ctypes.c_uint
+        attach = gl_function("glFramebufferTexture2D", *[word] * 4, ctypes.c_int)
+        attach(_FRAMEBUFFER, _COLOR_ATTACHMENT0, _POSITIVE_X + face, self.texture.glo, level)
+        status = gl_function("glCheckFramebufferStatus", word, result=word)(_FRAMEBUFFER)
         if status != _FRAMEBUFFER_COMPLETE:
             raise RuntimeError(
                 f"cube face {FACES[face]}, level {level}: the driver refuses it as a target "
                 f"(framebuffer status {status:#x})"
             )
-        side = self.size >> level
-        target.viewport = (0, 0, side, side)
-        target.scissor = (0, 0, side, side)
+        target.viewport = (0, 0, self.size >> level, self.size >> level)
         return target
-
-    def build_levels(self, rectangles: Iterable[tuple[int, Rectangle]] | None = None) -> None:
-        """Fill the smaller levels by halving, all or below rectangles (face, (x, y, w, h))."""
-        whole = [(face, (0, 0, self.size, self.size)) for face in range(6)]
-        wanted = whole if rectangles is None else list(rectangles)
-        for face in sorted({face for face, _ in wanted}):
-            parts = [rectangle for where, rectangle in wanted if where == face]
-            for level in range(1, self.levels):
-                # Below level 1 a pixel costs less than another call.
-                self._halve(face, level, parts=parts if level == 1 else [_union(parts)])
-
-    def _halve(self, face: int, level: int, *, parts: list[Rectangle]) -> None:
-        """Fill parts of a level with means of 2 x 2 texels: blits at half size, bilinear."""
-        self.attach(face, level=level)
-        _bind(_READ_FRAMEBUFFER, self._source.glo)
-        _attach(_READ_FRAMEBUFFER, face, self.texture.glo, level - 1)
-        integer, word = ctypes.c_int, ctypes.c_uint
-        blit = gl_function("glBlitFramebuffer", *[integer] * 8, word, word)
-        for part in parts:
-            x, y, width, height = _shrunk(part, level, self.size >> level)
-            ends = (x, y, x + width, y + height)
-            blit(*(2 * end for end in ends), *ends, _COLOR_BUFFER_BIT, _LINEAR)
 
     def _allocate_levels(self) -> None:
         self._bind_texture()
@@ -123,19 +144,6 @@ class CubeTarget:
             _TEXTURE_CUBE_MAP, self.texture.glo
         )
 
-    def _make_target(self, *, depth: bool) -> moderngl.Framebuffer:
-        buffer = self.gl.depth_renderbuffer((self.size, self.size)) if depth else None
-        return self.gl.framebuffer([self._stand_in], buffer)
-
-
-def _bind(target: int, framebuffer: int) -> None:
-    gl_function("glBindFramebuffer", ctypes.c_uint, ctypes.c_uint)(target, framebuffer)
-
-
-def _attach(target: int, face: int, texture: int, level: int) -> None:
-    attach = gl_function("glFramebufferTexture2D", *[ctypes.c_uint] * 4, ctypes.c_int)
-    attach(target, _COLOR_ATTACHMENT0, _POSITIVE_X + face, texture, level)
-
 
 def _union(rectangles: list[Rectangle]) -> Rectangle:
     left, low = min(r[0] for r in rectangles), min(r[1] for r in rectangles)
@@ -144,9 +152,8 @@ def _union(rectangles: list[Rectangle]) -> Rectangle:
 
 
 def _shrunk(rectangle: Rectangle, level: int, side: int) -> Rectangle:
-    """Return the texels of a smaller level that a rectangle of level 0 touches."""
+    """Return the first texels (x, y) of a smaller level below a rectangle, and those after."""
     x, y, width, height = rectangle
-    left, low = x >> level, y >> level
     right = min(side, ((x + width - 1) >> level) + 1)
     high = min(side, ((y + height - 1) >> level) + 1)
-    return left, low, max(0, right - left), max(0, high - low)
+    return x >> level, y >> level, right, high

@@ -4,10 +4,11 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.crowd.crowd import Crowd
-from renderer.crowd.cube import TILES, CrowdCube, cover, touched_tiles
+from renderer.crowd.cube import LEVELS, CrowdCube
+from renderer.crowd.cube_tiles import TILES
 from renderer.detail import Detail
 from renderer.light import Light, Sky
-from renderer.park.cube_faces import FACE_AXES, face_directions, read_face
+from renderer.park.cube_faces import face_directions, read_face
 
 SPEC = ClipSpec(left=Detail.uniform("ultra"), right=Detail.uniform("ultra"))
 SUN = np.array([-0.44, 0.64, 0.63]) / np.linalg.norm([-0.44, 0.64, 0.63])
@@ -24,6 +25,15 @@ def crowd(gl: moderngl.Context) -> Crowd:
 
 def faces(cube: CrowdCube) -> np.ndarray:
     return np.stack([read_face(cube.texture, face) for face in range(6)])
+
+
+def texels(cube: CrowdCube, level: int) -> np.ndarray:
+    side = cube.size >> level
+    read = [
+        cube._cube.attach(face, level=level).read((side, side), components=4, dtype="f2")
+        for face in range(6)
+    ]
+    return np.frombuffer(b"".join(read), np.float16).reshape(6, side, side, 4).astype(np.float32)
 
 
 def bodies(pixels: np.ndarray) -> np.ndarray:
@@ -94,23 +104,45 @@ def test_tiles_hold_every_drawn_pixel(gl, crowd) -> None:
     assert cube._drawn.mean() < 0.5
 
 
-@pytest.mark.parametrize("face", range(6))
-def test_a_sphere_touches_the_face_it_stands_before_and_not_the_opposite(face: int) -> None:
-    centre = (FACE_AXES[face] @ np.array([0.3, -0.2, 1.0]))[None] * 1000
-    tiles = touched_tiles(centre, np.array([100.0]), face)
-    column, row = round((0.3 + 1) / 2 * TILES), round((-0.2 + 1) / 2 * TILES)
-    assert tiles[row, column]
-    assert 1 <= tiles.sum() <= 9
-    assert not touched_tiles(centre, np.array([100.0]), face ^ 1).any()
+def test_on_a_gpu_whole_faces_are_drawn_and_show_the_same(gl, crowd, monkeypatch) -> None:
+    with monkeypatch.context() as patch:
+        patch.setattr("renderer.gl.context.SOFTWARE", ())
+        whole = CrowdCube(gl, 128, crowd)
+    chosen = CrowdCube(gl, 128, crowd)
+    monkeypatch.setattr(whole, "_chosen_draws", None)
+    for time in (0.4, 2.9):  # the walker has left the places of the first time by the second
+        for cube in (whole, chosen):
+            cube.render(time)
+        assert faces(chosen)[..., 3].any()
+        np.testing.assert_array_equal(faces(whole), faces(chosen))
+        for level in range(1, LEVELS):
+            # Halves of halves, each rounded to half floats.
+            found, expected = texels(whole, level), texels(chosen, level)
+            assert expected[..., 3].any()
+            np.testing.assert_allclose(found, expected, rtol=0.002, atol=1e-5)
 
 
-def test_rectangles_cover_the_tiles_exactly() -> None:
-    rng = np.random.Generator(np.random.PCG64(5))
-    tiles = rng.uniform(size=(TILES, TILES)) < 0.4
-    again = np.zeros((TILES, TILES), dtype=int)
-    for x, y, width, height in cover(tiles):
-        again[y : y + height, x : x + width] += 1
-    np.testing.assert_array_equal(again, tiles.astype(int))
+def test_a_frame_asks_gl_for_few_draws_and_no_new_targets(gl, crowd, monkeypatch) -> None:
+    chosen = CrowdCube(gl, 64, crowd)
+    with monkeypatch.context() as patch:
+        patch.setattr("renderer.gl.context.SOFTWARE", ())
+        whole = CrowdCube(gl, 64, crowd)
+    chosen.render(0.6)
+    draws: list[int] = []
+    drawing = moderngl.VertexArray.render
+
+    def counted(self, mode, *, vertices: int, first: int) -> None:
+        draws.append(vertices)
+        drawing(self, mode, vertices=vertices, first=first)
+
+    monkeypatch.setattr(moderngl.VertexArray, "render", counted)
+    monkeypatch.setattr(moderngl.Context, "framebuffer", None)
+    whole.render(0.7)
+    assert len(draws) == 2 * 6  # on each face all shadows, then all figures
+    assert draws[1] == 3 * sum(len(figure.body.triangles) for figure in crowd.figures)
+    draws.clear()
+    chosen.render(0.9)
+    assert 4 <= len(draws) <= 2 * 6
 
 
 def test_without_a_crowd_the_cube_stays_empty(gl, crowd) -> None:

@@ -75,6 +75,36 @@ def test_levels_below_a_rectangle_change_and_others_stay(gl, coloured) -> None:
     np.testing.assert_allclose(found[:, :3], [[0.5, 0.5, 0.5], COLOURS[4]], atol=1e-3)
 
 
+def test_a_face_stays_a_target_and_forgets_the_last_scissor(coloured) -> None:
+    target = coloured.attach(2)
+    target.scissor = (0, 0, 1, 1)
+    assert coloured.attach(3) is not target
+    assert coloured.attach(2) is target
+    target.clear(0.25, 0.5, 0.75, 1.0)
+    np.testing.assert_allclose(
+        read_face(coloured.texture, 2)[..., :3].min(axis=(0, 1)), [0.25, 0.5, 0.75]
+    )
+
+
+def test_a_gpus_own_levels_are_means_too(gl, monkeypatch) -> None:
+    rng = np.random.Generator(np.random.PCG64(3))
+    content = rng.uniform(size=(6, 64, 64, 4)).astype(np.float16)
+    halved = CubeTarget(gl, 64, levels=4)
+    with monkeypatch.context() as patch:
+        patch.setattr("renderer.gl.context.SOFTWARE", ())
+        built = CubeTarget(gl, 64, levels=4)
+    directions = np.concatenate([face_directions(8, face).reshape(-1, 3) for face in range(6)])
+    found = []
+    for cube in (halved, built):
+        for face in range(6):
+            cube.texture.write(face, content[face].tobytes())
+        cube.build_levels([(face, (0, 0, 64, 64)) for face in range(6)])
+        found.append(look_up(gl, cube.texture, directions, 3.0))
+    means = content.astype(np.float32).reshape(6, 8, 8, 8, 8, 4).mean(axis=(2, 4)).reshape(-1, 4)
+    for values in found:
+        np.testing.assert_allclose(values, means, atol=0.002)
+
+
 def test_an_unknown_gl_function_says_which_libraries_are_missing(monkeypatch) -> None:
     def refuse(name: str) -> None:
         raise OSError(name)
