@@ -6,7 +6,8 @@ Made when a frame first asks for them: most crowds never show a large eye.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import Any, Final
 
 import moderngl
@@ -39,11 +40,20 @@ SWAPPED: Final = {"eye_place.glsl": "crowd_place.glsl", "eye_chamber.glsl": "cro
 _SPEC: Final = ClipSpec(left=Detail(), right=Detail(), pupil_mm=PUPIL_MM)
 
 
-Kind = tuple[Detail, str]  # LoD and iris
+Kind = tuple[Detail, str]  # LoD as ``crowd_detail`` has it, and iris
+
+
+@dataclass(frozen=True)
+class Run:
+    """Eyes of one kind whose records lie side by side, and are drawn together."""
+
+    kind: Kind
+    first: int
+    count: int
 
 
 class EyeGroups:
-    """Programs, meshes and textures of the crowd's eyes: ``draw`` draws those of one kind."""
+    """Programs, meshes and textures of the crowd's eyes: ``draw`` draws those of each kind."""
 
     def __init__(
         self, gl: moderngl.Context, static_cube: Callable[[int], moderngl.TextureCube]
@@ -60,11 +70,7 @@ class EyeGroups:
 
     def prepare(self, kinds: Iterable[Kind]) -> None:
         """Make what kinds of eyes need, in a state of its own: a cube may draw itself first."""
-        missing = [
-            (crowd_detail(detail), iris)
-            for detail, iris in kinds
-            if (crowd_detail(detail), iris) not in self._irises
-        ]
+        missing = [kind for kind in kinds if kind not in self._irises]
         if not missing:
             return
         target = self._gl.fbo
@@ -75,20 +81,24 @@ class EyeGroups:
         target.use()
         self._gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
 
-    def draw(self, kind: Kind, *, first: int, count: int, values: dict[str, Any]) -> None:
-        """Draw ``count`` eyes from record ``first`` on; ``prepare`` their kind before."""
-        detail, iris = crowd_detail(kind[0]), kind[1]
-        program, mesh, shared = self._kinds[detail]
-        program.set(**shared, **self._irises[detail, iris], **values, u_first_eye=first)
-        mesh.render(instances=count)
+    def draw(self, runs: Iterable[Run], values: dict[str, Any]) -> None:
+        """Draw eyes of kinds that are prepared, those of one LoD one after the other."""
+        for detail, same in groupby(runs, key=lambda run: run.kind[0]):
+            program, mesh, shared = self._kinds[detail]
+            program.set(**shared, **values)
+            for run in same:
+                program.set(**self._irises[run.kind], u_first_eye=run.first)
+                mesh.render(instances=run.count)
 
-    def draw_outlines(self, kind: Kind, *, first: int, count: int, values: dict[str, Any]) -> None:
+    def draw_outlines(self, runs: Iterable[Run], values: dict[str, Any]) -> None:
         """Draw the same eyes as bare triangles that mark their samples."""
-        detail = crowd_detail(kind[0])
-        if detail not in self._bare:
-            self._bare[detail] = vertex_array(self._gl, self._outline, crowd_mesh(detail))
-        self._outline.set(**values, u_first_eye=first, u_mark=EYE / 255.0)
-        self._bare[detail].render(instances=count)
+        self._outline.set(**values, u_mark=EYE / 255.0)
+        for detail, same in groupby(runs, key=lambda run: run.kind[0]):
+            if detail not in self._bare:
+                self._bare[detail] = vertex_array(self._gl, self._outline, crowd_mesh(detail))
+            together = list(same)
+            self._outline.set(u_first_eye=together[0].first)
+            self._bare[detail].render(instances=sum(run.count for run in together))
 
     def _kind(self, detail: Detail) -> tuple[Program, moderngl.VertexArray, dict[str, Any]]:
         constants = eye_constants(detail, _SPEC) | {

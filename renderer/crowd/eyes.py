@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import groupby
 from typing import Any, Final
 
 import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.crowd.eye_groups import EyeGroups, Kind
+from renderer.crowd.eye_groups import EyeGroups, Run, crowd_detail
 from renderer.crowd.figures import Figure
 from renderer.crowd.gaze import CrowdGaze, iris_px
 from renderer.crowd.sockets import Socket, sockets
@@ -29,6 +28,8 @@ from renderer.lod.choice import LodPolicy
 PAINTED_PX: Final = 4.0  # smaller irises than this are painted: no mesh of a LoD has as few facets
 MOST_EYES: Final = 64  # crowd_eyes.glsl's
 _BINDING: Final = 0
+
+Rows = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,15 @@ class CrowdEyes:
                 row = rows[figure.member.person.body] + eye
                 self._facts[2 * number + eye, :5] = 1.0 - 2.0 * eye, radius, sun, sky, row
         self._records = gl.buffer(reserve=MOST_EYES * 96)
-        self._drawn: list[tuple[Kind, int]] = []
+        self._limits_px = np.array(policy.limits_px)
+        colours = list(dict.fromkeys(figure.member.person.eye for figure in figures))
+        irises = [colours.index(figure.member.person.eye) for figure in figures]
+        self._irises = np.repeat(irises, 2)
+        self._kinds = [
+            (crowd_detail(step.detail), colour) for step in policy.steps for colour in colours
+        ]
+        self._rows: Rows = np.zeros(0, dtype=np.int64)
+        self._runs: list[Run] = []
 
     def choose(
         self,
@@ -89,20 +98,18 @@ class CrowdEyes:
         # Lids stay where they are while the globe turns under them.
         self._facts[:, 5:7] = GLOBE_RADIUS_MM * np.sin(np.radians(aside_deg))
         sizes = iris_px(self._placed, view_matrix=view_matrix, projection=projection, lines=lines)
+        rows = _real_eyes(sizes, among)
+        # As the policy chooses: a LoD is enough for its limit itself.
+        steps = np.searchsorted(self._limits_px, sizes[rows])
+        self._arrange(rows, steps)
         found = []
-        for figure in among:
-            pair = sizes[2 * figure : 2 * figure + 2]
-            # Both eyes or none: the paint is one part of the body.
-            if pair.max() < PAINTED_PX:
-                continue
-            for eye in np.flatnonzero(pair > 0).tolist():
-                step = self._policy.steps[self._policy.choose(float(pair[eye]))]
-                found.append(DrawnEye(figure, eye, float(pair[eye]), step.lod, step.detail))
+        for row, number in zip(rows.tolist(), steps.tolist(), strict=True):
+            step = self._policy.steps[number]
+            found.append(DrawnEye(row // 2, row % 2, float(sizes[row]), step.lod, step.detail))
         return found
 
     def draw(
         self,
-        eyes: Sequence[DrawnEye],
         *,
         light: Light,
         view_matrix: npt.NDArray[np.floating],
@@ -110,13 +117,11 @@ class CrowdEyes:
         camera_mm: npt.NDArray[np.floating],
         lines: int,
     ) -> None:
-        """Draw eyes that ``choose`` returned last, opaque and depth-tested."""
-        ordered = sorted(eyes, key=lambda eye: (eye.lod, self._iris(eye), eye.figure, eye.eye))
-        rows = [2 * eye.figure + eye.eye for eye in ordered]
-        records = np.empty((len(rows), 24), dtype=np.float32)
-        records[:, :16] = np.swapaxes(self._placed[rows], 1, 2).reshape(-1, 16)
-        records[:, 16:] = self._facts[rows]
-        self._records.write(records.tobytes())
+        """Draw the eyes that ``choose`` returned last, opaque and depth-tested."""
+        records = np.empty((len(self._rows), 24), dtype=np.float32)
+        records[:, :16] = np.swapaxes(self._placed[self._rows], 1, 2).reshape(-1, 16)
+        records[:, 16:] = self._facts[self._rows]
+        self._records.write(records)
         self._records.bind_to_uniform_block(_BINDING)
         values: dict[str, Any] = {
             **light.uniforms(),
@@ -126,28 +131,41 @@ class CrowdEyes:
             "u_pixel_rad": 2.0 / (float(projection[1][1]) * lines),
             "u_lid_rims": self._rims,
         }
-        kinds = groupby(ordered, key=lambda eye: (eye.detail, self._iris(eye)))
-        counts = [(kind, len(list(eyes))) for kind, eyes in kinds]
-        self._groups.prepare(kind for kind, _ in counts)
-        self._drawn = counts
-        first = 0
-        for kind, count in counts:
-            self._groups.draw(kind, first=first, count=count, values=values)
-            first += count
+        self._groups.prepare(run.kind for run in self._runs)
+        self._groups.draw(self._runs, values)
 
     def draw_outlines(
         self, *, view_matrix: npt.NDArray[np.floating], projection: npt.NDArray[np.floating]
     ) -> None:
         """Draw the eyes of the last ``draw`` as bare triangles that mark their samples."""
-        values = {"u_view_matrix": view_matrix, "u_projection": projection}
         self._records.bind_to_uniform_block(_BINDING)
-        first = 0
-        for kind, count in self._drawn:
-            self._groups.draw_outlines(kind, first=first, count=count, values=values)
-            first += count
+        self._groups.draw_outlines(
+            self._runs, {"u_view_matrix": view_matrix, "u_projection": projection}
+        )
 
-    def _iris(self, eye: DrawnEye) -> str:
-        return self._figures[eye.figure].member.person.eye
+    def _arrange(self, rows: Rows, steps: Rows) -> None:
+        """Put eyes of one LoD and iris side by side, to be drawn together."""
+        colours = len(self._kinds) // len(self._policy.steps)
+        kinds = steps * colours + self._irises[rows]
+        order = np.argsort(kinds, kind="stable")
+        self._rows = rows[order]
+        numbers, firsts, counts = np.unique(kinds[order], return_index=True, return_counts=True)
+        self._runs = [
+            Run(self._kinds[kind], first, count)
+            for kind, first, count in zip(
+                numbers.tolist(), firsts.tolist(), counts.tolist(), strict=True
+            )
+        ]
+
+
+def _real_eyes(sizes_px: Floats, among: Sequence[int]) -> Rows:
+    """Return the rows of the eyes of figures ``among`` that are not painted."""
+    pairs = sizes_px.reshape(-1, 2)
+    is_among = np.zeros(len(pairs), dtype=bool)
+    is_among[among] = True
+    # Both eyes or none: the paint is one part of the body.
+    is_real = is_among & (pairs.max(axis=1) >= PAINTED_PX)
+    return np.flatnonzero(is_real[:, None] & (pairs > 0.0))
 
 
 def _rims_texture(gl: moderngl.Context, fitted: Sequence[Socket]) -> moderngl.Texture:
