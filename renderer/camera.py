@@ -47,6 +47,11 @@ class View:
     position_mm: npt.NDArray[np.float64]
     eyes: tuple[int, ...]
 
+    def __post_init__(self) -> None:
+        # Programs know again what cannot change: many draws of a view are given the same camera.
+        for array in (self.view_matrix, self.projection, self.position_mm):
+            array.flags.writeable = False
+
     @property
     def uniforms(self) -> CameraUniforms:
         """The view as keyword arguments of a draw call."""

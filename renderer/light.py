@@ -15,6 +15,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
+from renderer.gl.uniforms import constant
 from renderer.park.cube_lookup import look_up
 from renderer.spherical_harmonics import ambient_uniforms, sh_basis
 
@@ -49,7 +50,7 @@ class Sky:
         return np.maximum(sh_basis(directions) @ self.ambient_sh, 0.0)
 
 
-@dataclass
+@dataclass(frozen=True)
 class Light:
     """The sky's numbers with the head's sun shadow map (depth, compared in the shader)."""
 
@@ -59,10 +60,15 @@ class Light:
 
     def uniforms(self) -> dict[str, Any]:
         """Return every uniform and texture of ``shaders/light.glsl`` by name."""
+        return self._uniforms
+
+    @cached_property
+    def _uniforms(self) -> dict[str, Any]:
+        ambient = {name: constant(values) for name, values in self.sky.ambient.items()}
         return {
-            "u_sun_direction": self.sky.sun_direction,
-            "u_sun_irradiance": self.sky.sun_irradiance,
-            **self.sky.ambient,
+            "u_sun_direction": constant(self.sky.sun_direction),
+            "u_sun_irradiance": constant(self.sky.sun_irradiance),
+            **ambient,
             "u_sun_shadow": self.shadow_map,
-            "u_world_to_shadow": self.world_to_shadow,
+            "u_world_to_shadow": constant(self.world_to_shadow),
         }

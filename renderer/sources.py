@@ -27,7 +27,7 @@ def code_version() -> str:
 def module_version(module: str) -> str:
     """Return 16 hexadecimal digits over a module and what it imports of the renderer.
 
-    ``module`` is a dotted name. Shaders count where ``renderer.gl.program`` is among the imported.
+    ``module`` is a dotted name. Shaders count where ``renderer.gl.assembly`` is among the imported.
     A module outside of the renderer depends on all of it.
     """
     start = _source(module)
@@ -39,7 +39,7 @@ def module_version(module: str) -> str:
         if path not in found:
             found.add(path)
             waiting += _imported(path)
-    if ROOT / "gl" / "program.py" in found:
+    if ROOT / "gl" / "assembly.py" in found:
         found |= {path for path in ROOT.rglob("*") if path.suffix in SHADERS}
     return _digest(found)
 

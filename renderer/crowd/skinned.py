@@ -11,7 +11,8 @@ import numpy.typing as npt
 from renderer.crowd.figure import Body
 from renderer.crowd.figures import Figure
 from renderer.crowd.pieces import PARTS
-from renderer.gl.program import assemble, plain_uniform
+from renderer.gl.assembly import assemble
+from renderer.gl.uniforms import plain_uniform
 
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]

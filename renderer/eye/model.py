@@ -39,7 +39,9 @@ from renderer.eye.sunlight import (
     shade_map,
     sunlight_values,
 )
-from renderer.gl.program import Program, build_program, detail_constants
+from renderer.gl.assembly import detail_constants
+from renderer.gl.program import Program, build_program
+from renderer.gl.uniforms import constant
 from renderer.iris.source import iris_of
 from renderer.light import Light
 from renderer.spherical_harmonics import terms_irradiance
@@ -142,6 +144,10 @@ def build_model(
             mean_albedo=np.asarray(values["u_iris_mean"]),
             albedo=albedo,
         )
+    values = {
+        name: constant(value) if isinstance(value, np.ndarray) else value
+        for name, value in values.items()
+    }
     shaded = Shaded(rims)
     silhouette = Silhouette(gl, detail_mesh(detail)) if is_fine else None
     return EyeModel(

@@ -18,7 +18,8 @@ from renderer.eye.kept import Kept, fingerprint
 from renderer.eye.lids import LidRims
 from renderer.eye.painted_caustic import painted_caustic
 from renderer.eye.textures import clamped, float_texture, grey_texture, with_alpha
-from renderer.gl.program import Constants, build_program
+from renderer.gl.assembly import Constants
+from renderer.gl.program import build_program
 from renderer.light import Sky
 
 Array = npt.NDArray[np.float64]

@@ -45,6 +45,9 @@ class BareMesh:
 
         ``to_clip`` (4, 4) is what the program does to points.
         """
+        if tiles.mask is None:
+            self._array.render(moderngl.TRIANGLES)
+            return
         matrix = np.asarray(to_clip, dtype=float)
         groups = tiles.touched(matrix, *self._spheres)
         if not groups.any():

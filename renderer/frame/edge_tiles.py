@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from renderer.camera import View
 from renderer.frame.boxes import Box, Boxes
+from renderer.gl.context import chooses_parts
 from renderer.gl.program import build_program
 
 TILE_PX: Final = 8  # edge_tiles.frag reads blocks of two by two such tiles
@@ -31,10 +32,11 @@ Runs = npt.NDArray[np.int64]
 class EdgeTiles:
     """Where a view may have edges: ``mask`` (rows from below, columns) of its tiles.
 
-    ``runs`` are the same tiles on the GPU; beyond ``gaps`` something opaque covers every pixel.
+    Without a mask that is everywhere. ``runs`` are the same tiles on the GPU; beyond ``gaps``
+    something opaque covers every pixel.
     """
 
-    mask: Mask
+    mask: Mask | None
     runs: Boxes
     size_px: tuple[int, int]  # of the view
     gaps: Boxes | None = None
@@ -42,10 +44,13 @@ class EdgeTiles:
     @cached_property
     def _sums(self) -> npt.NDArray[np.int64]:
         """How many tiles are marked before and below each corner."""
+        assert self.mask is not None
         return np.pad(self.mask.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
 
     def touched(self, to_clip: Floats, centres: Floats, radii: Floats) -> Mask:
         """Return which spheres (n, 3) and (n,) may cover a marked tile; ``to_clip`` is (4, 4)."""
+        if self.mask is None:
+            return np.ones(len(radii), dtype=bool)
         clip = centres @ to_clip[:, :3].T + to_clip[:, 3]
         half = np.array(self.size_px) / 2
         depth = np.maximum(clip[:, 3], 1e-6)
@@ -61,13 +66,18 @@ class EdgeTiles:
 
 
 class EdgeFinder:
-    """Find the tiles of a picture's views that may have edges."""
+    """Find the tiles of a picture's views that may have edges: on a GPU, which need not wait, all.
+
+    A GPU skips pixels without edges as fast as it could be told where they are.
+    """
 
     def __init__(
         self, gl: moderngl.Context, radiance: moderngl.Texture, depth: moderngl.Texture
     ) -> None:
         """``radiance`` and ``depth`` are of one sample per pixel and stay the same."""
         self._gl = gl
+        self._chooses = chooses_parts(gl)
+        self._everywhere: dict[Box, EdgeTiles] = {}
         self._boxes: list[tuple[Boxes, Boxes]] = []
         self._size = radiance.size
         self._textures = {"u_radiance": radiance, "u_depth": depth}
@@ -79,6 +89,8 @@ class EdgeFinder:
 
     def find(self, views: Sequence[View]) -> list[EdgeTiles]:
         """Return for each view where it may have edges."""
+        if not self._chooses:
+            return [self._all(view.rectangle) for view in views]
         sizes = [_blocks(view.rectangle[2:]) for view in views]
         firsts = np.cumsum([0] + [columns for columns, _ in sizes]).tolist()
         size = (firsts[-1], max(rows for _, rows in sizes))
@@ -111,6 +123,13 @@ class EdgeFinder:
             runs.write(runs_of(own >= EDGE, view.rectangle))
             tiles.append(EdgeTiles(own >= EDGE, runs, view.rectangle[2:], gaps))
         return tiles
+
+    def _all(self, rectangle: Box) -> EdgeTiles:
+        if rectangle not in self._everywhere:
+            whole = Boxes(self._gl, self._size)
+            whole.write(np.array([rectangle]))
+            self._everywhere[rectangle] = EdgeTiles(None, whole, rectangle[2:], whole)
+        return self._everywhere[rectangle]
 
 
 def runs_of(mask: Mask, rectangle: Box) -> Runs:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.camera import Matrix
+from renderer.gl.context import chooses_parts
 from renderer.gl.program import Program
 from renderer.head.cells import Cells, sort_into_cells
 
@@ -47,6 +48,7 @@ class CellMesh:
             on = np.arange(len(source)) >= len(rows)
             rows = rows[source]
             rows[on, turn] += 1.0
+        self._chooses = chooses_parts(gl)
         self._cells: list[tuple[int, Cells]] = []
         parts, first = [triangles[:0]], 0
         for kind in np.unique(kinds).tolist():
@@ -78,12 +80,15 @@ class CellMesh:
     ) -> None:
         """Draw the cells that a world-to-clip matrix can show, with a camera only its fronts.
 
+        On a GPU all of them.
+
         ``kind`` narrows it to triangles of that kind.
         """
         array = self._array(program)
         for number, cells in self._cells:
             if kind is None or number == kind:
-                for first, count in cells.visible(np.asarray(clip, dtype=float), camera_mm):
+                shown = cells.visible(clip, camera_mm) if self._chooses else cells.whole
+                for first, count in shown:
                     array.render(vertices=count, first=first)
 
     def _array(self, program: Program) -> moderngl.VertexArray:

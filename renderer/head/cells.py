@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
 
@@ -26,26 +28,38 @@ class Cells:
     facing: Floats
     spread: Floats
 
-    def visible(self, clip: Floats, camera_mm: Floats | None = None) -> list[tuple[int, int]]:
+    @cached_property
+    def whole(self) -> list[tuple[int, int]]:
+        """The runs (first, count) of all cells: one, as ``sort_into_cells`` leaves them."""
+        return merged(self.first, self.count)
+
+    def visible(
+        self, clip: npt.ArrayLike, camera_mm: Floats | None = None
+    ) -> list[tuple[int, int]]:
         """Return the runs (first, count) that a view can show, neighbours merged.
 
+        ``clip`` (4, 4) is world to clip.
         Cells outside the frustum are left out; with a camera, so are those that face away.
         """
+        clip = np.asarray(clip, dtype=float)
         inside = (frustum_distance(clip, self.centre_mm) > -self.radius_mm[:, None]).all(axis=1)
         if camera_mm is not None:
             to_camera = camera_mm - self.centre_mm
             distance = np.linalg.norm(to_camera, axis=1)
             slack = self.spread + self.radius_mm / np.maximum(distance, self.radius_mm)
             inside &= (to_camera * self.facing).sum(axis=1) > -slack * distance
-        runs: list[tuple[int, int]] = []
-        for first, count in zip(
-            self.first[inside].tolist(), self.count[inside].tolist(), strict=True
-        ):
-            if runs and sum(runs[-1]) == first:
-                runs[-1] = (runs[-1][0], runs[-1][1] + count)
-            else:
-                runs.append((first, count))
-        return runs
+        return merged(self.first[inside], self.count[inside])
+
+
+def merged(firsts: Indices, counts: Indices) -> list[tuple[int, int]]:
+    """Return runs (first, count) in their order with neighbours as one."""
+    runs: list[tuple[int, int]] = []
+    for first, count in zip(firsts.tolist(), counts.tolist(), strict=True):
+        if runs and sum(runs[-1]) == first:
+            runs[-1] = (runs[-1][0], runs[-1][1] + count)
+        else:
+            runs.append((first, count))
+    return runs
 
 
 def frustum_distance(clip: Floats, points_mm: Floats) -> Floats:

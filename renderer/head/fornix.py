@@ -15,6 +15,7 @@ import numpy.typing as npt
 from renderer.body.makehuman import Floats
 from renderer.camera import eye_centre_mm
 from renderer.gl.program import build_program
+from renderer.gl.uniforms import constant
 from renderer.light import Sky
 from renderer.spherical_harmonics import sh_basis
 
@@ -34,12 +35,16 @@ class Fornix:
 
     def __init__(self, gl: moderngl.Context) -> None:
         self._program = build_program(gl, "depth.vert", fragment="fornix.frag")
+        self._sky: Sky | None = None
+        self._radiance = np.zeros(3)
         corners = gl.buffer(fold_triangles().astype(np.float32).tobytes())
         self._folds = gl.vertex_array(self._program.gl_program, [(corners, "3f", "in_position")])
 
     def draw(self, world_to_clip: npt.ArrayLike, sky: Sky) -> None:
         """Draw both, opaque, into the current target."""
-        self._program.set(u_world_to_clip=world_to_clip, u_radiance=radiance(sky))
+        if sky is not self._sky:
+            self._sky, self._radiance = sky, constant(radiance(sky))
+        self._program.set(u_world_to_clip=world_to_clip, u_radiance=self._radiance)
         self._folds.render(moderngl.TRIANGLES)
 
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
 from renderer.camera import Matrix
+from renderer.gl.context import chooses_parts
 from renderer.gl.program import Program, build_program
 from renderer.head.cells import sort_into_cells
 from renderer.head.strand_group import Strands
@@ -93,6 +94,7 @@ class StrandMesh:
             spread = np.full(len(outward), SILHOUETTE)
             self._cells = replace(self._cells, facing=outward, spread=spread)
         self._gl = gl
+        self._chooses = chooses_parts(gl)
         self._vertices = gl.buffer(rows.astype(np.float32).tobytes())
         self._index = gl.buffer(triangles.astype(np.int32).tobytes())
         self._array: moderngl.VertexArray | None = None
@@ -106,7 +108,10 @@ class StrandMesh:
         self._sun.write(both_sides.tobytes())
 
     def draw(self, program: Program, clip: Matrix, *, camera_mm: Floats) -> None:
-        """Draw the ribbons that a view can show with the program of their kind, always the same."""
+        """Draw the ribbons that a view can show with the program of their kind, always the same.
+
+        On a GPU all of them.
+        """
         if self._array is None:
             self._array = self._gl.vertex_array(
                 program.gl_program,
@@ -118,7 +123,8 @@ class StrandMesh:
             u_middle_mm=self._middle_mm,
             u_least_px=LEAST_LOCK_PX if self._hides else LEAST_PX,
         )
-        for first, count in self._cells.visible(np.asarray(clip, dtype=float), camera):
+        shown = self._cells.visible(clip, camera) if self._chooses else self._cells.whole
+        for first, count in shown:
             self._array.render(vertices=count, first=first)
 
 

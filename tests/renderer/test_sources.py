@@ -13,15 +13,15 @@ from renderer import cache, sources
 
 @pytest.fixture
 def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A small renderer: iris.maps imports iris.noise; eye imports program and the maps."""
+    """A small renderer: iris.maps imports iris.noise; eye imports the assembly and the maps."""
     root = tmp_path / "renderer"
     files = {
         "iris/__init__.py": "",
         "iris/maps.py": "from renderer.iris import noise\n",
         "iris/noise.py": "def f() -> None:\n    import numpy\n",
-        "eye.py": "from renderer.iris.maps import x\nimport renderer.gl.program\n",
+        "eye.py": "from renderer.iris.maps import x\nimport renderer.gl.assembly\n",
         "gl/__init__.py": "",
-        "gl/program.py": "",
+        "gl/assembly.py": "",
         "shaders/eye.frag": "void main() {}",
     }
     for name, text in files.items():
