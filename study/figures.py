@@ -96,7 +96,7 @@ def _summary(found: Summary) -> dict[str, Any]:
         "findings": [[own.distance, own.sentence] for own in found.findings],
         "limits": list(found.limits),
         "design": list(found.design),
-        "quality": list(found.quality),
+        "quality": [*found.quality, *found.chart_notes],
         "charts": [
             {"name": chart.name, "part": chart.part, "title": chart.title, "caption": chart.caption}
             for chart in CHARTS

@@ -9,7 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from analysis.charts.parts import distance_label, grouped_places, head_groups, readable_on
+from analysis.charts.parts import (
+    MOST_COLUMNS,
+    grouped_places,
+    head_groups,
+    in_bands,
+    name_columns,
+    readable_on,
+)
 from analysis.charts.style import (
     INK,
     NO_RATINGS,
@@ -104,27 +111,28 @@ def realism_matrix(tables: Tables) -> Figure:
     distances, lods = distance_order(counted), lod_order(counted)[::-1]
     cells = {(row["lod"], row["distance"]): row for row in records(means)}
     shown = set(zip(counted["lod"], counted["distance"], strict=True))
+    bands = in_bands(distances, MOST_COLUMNS)
+    columns = len(bands[0])
+    width = min(PAGE_WIDTH_IN, 1.9 + 1.3 * max(3, columns))
     figure = new_figure(
-        min(PAGE_WIDTH_IN, 1.9 + 1.3 * max(3, len(distances))),
-        1.25 + 0.62 * len(lods),
+        width,
+        0.8 + (0.45 + 0.62 * len(lods)) * len(bands),
         MATRIX,
         is_simulated=tables.is_simulated,
     )
-    axes = figure.subplots()
-    for j, distance in enumerate(distances):
-        for i, lod in enumerate(lods):
-            cell = cells.get((lod, distance))
-            reason = "no rating" if (lod, distance) in shown else "not shown"
-            _draw_cell(axes, (j, i), cell or {"reason": reason}, tables.scale)
-    tidy(axes, grid="")
-    axes.set_xlim(-0.5, len(distances) - 0.5)
-    axes.set_ylim(len(lods) - 0.5, -0.5)
-    axes.set_xticks(
-        range(len(distances)), [distance_label(d, tables, joint="\n") for d in distances]
-    )
-    axes.set_yticks(range(len(lods)), lods)
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
+    for axes, own in zip(figure.subplots(len(bands), squeeze=False)[:, 0], bands, strict=True):
+        for j, distance in enumerate(own):
+            for i, lod in enumerate(lods):
+                cell = cells.get((lod, distance))
+                reason = "no rating" if (lod, distance) in shown else "not shown"
+                _draw_cell(axes, (j, i), cell or {"reason": reason}, tables.scale)
+        tidy(axes, grid="")
+        axes.set_xlim(-0.5, columns - 0.5)
+        axes.set_ylim(len(lods) - 0.5, -0.5)
+        name_columns(axes, own, tables, width_in=(width - 1.0) / columns)
+        axes.set_yticks(range(len(lods)), lods)
+        axes.tick_params(length=0)
+        axes.spines[:].set_visible(False)
     return figure
 
 

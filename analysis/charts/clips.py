@@ -39,8 +39,10 @@ TITLE: Final = "Perceived realism of each eye, per clip"
 _CLIPS_PER_ROW: Final = 10
 _SLOT_IN: Final = 0.6  # width of one eye's column where there is room
 _UPRIGHT_IN: Final = 0.5  # below this width names of columns stand upright
+_UPRIGHT_PT: Final = 62.0  # what short names take that stand upright
 _ROW_IN: Final = 2.9
 _MOST_IN: Final = 8.2  # all rows together: a page with its caption
+_LEAST_IN: Final = 1.35  # a row that can be read; many distances take more than a page
 _GAP: Final = 0.5  # between clips, in columns
 _MOST_DOTS: Final = 80  # with more people the area of one dot per rating shows their share
 _KEYS: Final = ["distance", "clip", "eye", "lod"]
@@ -62,13 +64,9 @@ def realism_per_clip(tables: Tables) -> Figure:
     widest = max(sum(_columns(panel) for panel in row) for row in rows)
     width = min(PAGE_WIDTH_IN, max(5.5, 0.9 + _SLOT_IN * widest))
     is_narrow = (width - 0.9) / widest < max(_UPRIGHT_IN, upright_in(set(means["lod"])))
-    figure = new_figure(
-        width,
-        1.0
-        + min(_ROW_IN + (upright_in(lods) if is_narrow else 0.0), _MOST_IN / len(rows)) * len(rows),
-        TITLE,
-        is_simulated=tables.is_simulated,
-    )
+    below = upright_in(lods) if is_narrow else 0.0
+    height = max(_LEAST_IN + below, min(_ROW_IN + below, _MOST_IN / len(rows)))
+    figure = new_figure(width, 1.0 + height * len(rows), TITLE, is_simulated=tables.is_simulated)
     for band, row in zip(_bands(figure, len(rows)), rows, strict=True):
         # A row with fewer clips is filled up, so that columns are equally wide in all rows.
         spare = widest - sum(_columns(panel) for panel in row)
@@ -130,7 +128,8 @@ def _draw_clips(
             joint = " " if is_narrow else "\n"
             names.append(row["lod"] if pd.isna(row["eye"]) else f"{row['eye']}{joint}{row['lod']}")
         if own["eye"].notna().any() and PAIRED not in str(clip):
-            _name_clip(axes, x + (len(own) - 1) / 2, clip_label(str(clip)), is_narrow=is_narrow)
+            upright = [f"right {lod}" for lod in own["lod"]] if is_narrow else []
+            _name_clip(axes, x + (len(own) - 1) / 2, clip_label(str(clip)), upright=upright)
         x += len(own) + _GAP
     axes.set_xticks(places, names, rotation=90 if is_narrow else 0)
     axes.tick_params(axis="x", length=0)
@@ -175,12 +174,14 @@ def _write_count(axes: Axes, x: float, text: str, *, is_first: bool) -> None:
     )
 
 
-def _name_clip(axes: Axes, x: float, name: str, *, is_narrow: bool) -> None:
+def _name_clip(axes: Axes, x: float, name: str, *, upright: Sequence[str]) -> None:
+    """Write a clip's name below those of its eyes, which may stand ``upright``."""
+    under = max(_UPRIGHT_PT, 72 * upright_in(upright) + 8) if upright else 29.0
     axes.annotate(
-        textwrap.fill(name, 12 if is_narrow else 20),
+        textwrap.fill(name, 12 if upright else 20),
         (x, 0),
         xycoords=("data", "axes fraction"),
-        xytext=(0, -62 if is_narrow else -29),
+        xytext=(0, -under),
         textcoords="offset points",
         ha="center",
         va="top",

@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 
 from analysis.charts.forest import NO_VERDICT
 from analysis.charts.material import Material
-from analysis.charts.parts import distance_label, readable_on, wrapped
+from analysis.charts.parts import MOST_COLUMNS, in_bands, name_columns, readable_on, wrapped
 from analysis.charts.stability import stability_sentence
 from analysis.charts.style import (
     INK,
@@ -71,26 +71,27 @@ def decision_chart(material: Material) -> Figure:
     tables = material.tables
     distances = [d for d in distance_order(tables.ratings) if d in set(table["distance"])]
     lods = [lod for lod in lod_order(tables.ratings) if lod in set(table["lod"])][::-1]
+    bands = in_bands(distances, MOST_COLUMNS)
+    columns = len(bands[0])
+    width = min(PAGE_WIDTH_IN, 1.4 + 1.4 * max(2, columns))
     figure = new_figure(
-        min(PAGE_WIDTH_IN, 1.4 + 1.4 * max(2, len(distances))),
-        1.3 + _ROW_IN * len(lods),
+        width,
+        0.85 + (0.45 + _ROW_IN * len(lods)) * len(bands),
         TITLE,
         is_simulated=tables.is_simulated,
     )
-    axes = figure.subplots()
-    tidy(axes, grid="")
     cells = {(row["distance"], row["lod"]): row for row in records(table)}
-    for x, distance in enumerate(distances):
-        for y, lod in enumerate(lods):
-            _draw_cell(axes, x, y, cells.get((distance, lod)))
-    axes.set_xlim(-0.5, len(distances) - 0.5)
-    axes.set_ylim(len(lods) - 0.5, -0.5)
-    axes.set_xticks(
-        range(len(distances)), [distance_label(d, tables, joint="\n") for d in distances]
-    )
-    axes.set_yticks(range(len(lods)), lods)
-    axes.tick_params(length=0, labelsize=NORMAL)
-    axes.spines[:].set_visible(False)
+    for axes, own in zip(figure.subplots(len(bands), squeeze=False)[:, 0], bands, strict=True):
+        tidy(axes, grid="")
+        for x, distance in enumerate(own):
+            for y, lod in enumerate(lods):
+                _draw_cell(axes, x, y, cells.get((distance, lod)))
+        axes.set_xlim(-0.5, columns - 0.5)
+        axes.set_ylim(len(lods) - 0.5, -0.5)
+        name_columns(axes, own, tables, width_in=(width - 1.2) / columns)
+        axes.set_yticks(range(len(lods)), lods)
+        axes.tick_params(length=0, labelsize=NORMAL)
+        axes.spines[:].set_visible(False)
     told = stability_sentence(material)
     if told:
         chars = int(15 * figure.get_figwidth())

@@ -12,8 +12,11 @@ from types import TracebackType
 from typing import Final, Self
 
 from analysis.charts.catalogue import CHARTS, Chart
+from analysis.charts.fonts import used
 from analysis.charts.forks import CAN_FORK, Fork, Queue
+from analysis.charts.long_names import shorten
 from analysis.charts.material import Material
+from analysis.charts.names import fonts_of, short_names
 from analysis.charts.style import figure_bytes
 
 EARLY: Final = tuple(chart for chart in CHARTS if chart.is_early)
@@ -73,7 +76,10 @@ def draw_charts(material: Material, *, processes: int = 1) -> dict[str, bytes]:
 def _draw(material: Material, charts: Iterable[Chart]) -> dict[str, bytes]:
     """Draw charts one after another; one figure serves both kinds of file."""
     files: dict[str, bytes] = {}
-    for chart in charts:
-        figure = chart.draw(material)
-        files |= {f"{chart.name}.{kind}": figure_bytes(figure, kind) for kind in ("svg", "png")}
+    short = short_names(material.tables)
+    with used(fonts_of(material.tables)):
+        for chart in charts:
+            figure = chart.draw(material)
+            shorten(figure, short)
+            files |= {f"{chart.name}.{kind}": figure_bytes(figure, kind) for kind in ("svg", "png")}
     return files

@@ -6,15 +6,22 @@ import itertools
 import math
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from analysis.charts.long_names import LONGEST
 from analysis.charts.style import INK, SMALL, lod_colour, lod_marker
 from analysis.tables.reading import Tables
+
+MOST_COLUMNS: Final = 7
+"""How many columns of cells with numbers a page is wide enough for."""
+_LETTER_IN: Final = 0.065
+_LARGE_LETTER_IN: Final = 0.08
+_LEAST_WIDTH_IN: Final = 0.75  # of a column whose name lies
 
 
 def distance_label(distance: str, tables: Tables, *, joint: str = ", ") -> str:
@@ -97,9 +104,33 @@ def wrapped(name: str, width: int) -> str:
     return textwrap.fill(name, width, break_long_words=False)
 
 
-def upright_in(names: Iterable[str]) -> float:
-    """Return about how many inches names take that stand upright below an axis."""
-    return 0.065 * max((len(name) for name in names), default=0)
+def upright_in(labels: Iterable[str], *, names: int = 1) -> float:
+    """Return about how many inches labels take that stand upright below an axis.
+
+    Each has as many ``names`` in it, which are shortened where they are too long.
+    """
+    most = names * (LONGEST + 5)
+    return _LETTER_IN * max((min(len(label), most) for label in labels), default=0)
+
+
+def in_bands(names: Sequence[str], most: int) -> list[list[str]]:
+    """Part names into rows of about equal length, of at most ``most`` each."""
+    parts = np.array_split(np.array(names, dtype=object), max(1, -(-len(names) // most)))
+    return [[str(name) for name in part] for part in parts]
+
+
+def name_columns(axes: Axes, distances: Sequence[str], tables: Tables, *, width_in: float) -> None:
+    """Name a panel's columns by distance: in lines as long as a column is wide, or upright."""
+    is_narrow = width_in < _LEAST_WIDTH_IN
+    joint = ", " if is_narrow else "\n"
+    labels = [distance_label(distance, tables, joint=joint) for distance in distances]
+    if not is_narrow:
+        letters = int(width_in / _LARGE_LETTER_IN)
+        labels = [
+            "\n".join(textwrap.fill(line, letters) for line in label.split("\n"))
+            for label in labels
+        ]
+    axes.set_xticks(range(len(labels)), labels, rotation=90 if is_narrow else 0)
 
 
 def grouped_places(groups: Sequence[str]) -> list[float]:
@@ -157,9 +188,11 @@ def readable_on(colour: str) -> str:
 
 def head_columns(axes: Axes, distances: Sequence[str]) -> None:
     """Write each distance over its columns and part them by a line."""
-    for distance in dict.fromkeys(distances):
+    named = dict.fromkeys(distances)
+    turn = 90 if len(named) > MOST_COLUMNS else 0
+    for distance in named:
         own = [i for i, name in enumerate(distances) if name == distance]
         axes.text(float(np.mean(own)), -0.75, distance, ha="center", va="bottom", fontsize=SMALL,
-                  fontweight="bold", color=INK)  # fmt: skip
+                  fontweight="bold", color=INK, rotation=turn)  # fmt: skip
         if own[0]:
             axes.axvline(own[0] - 0.5, color="white", linewidth=3)

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from analysis.charts.parts import distance_label, draw_mean, lod_legend
+from analysis.charts.parts import distance_label, draw_mean, lod_legend, name_columns, upright_in
 from analysis.charts.style import (
     FAINT,
     INK,
@@ -114,8 +114,9 @@ def realism_by_distance(tables: Tables) -> Figure:
         return message_figure(BY_DISTANCE, NO_RATINGS, is_simulated=tables.is_simulated)
     rated = answered(tables.ratings)
     distances, lods = distance_order(rated), lod_order(rated)
+    width = min(PAGE_WIDTH_IN, 2.4 + 1.3 * max(3, len(distances)))
     figure = new_figure(
-        min(PAGE_WIDTH_IN, 2.4 + 1.3 * max(3, len(distances))),
+        width,
         3.7,
         BY_DISTANCE,
         is_simulated=tables.is_simulated,
@@ -131,9 +132,8 @@ def realism_by_distance(tables: Tables) -> Figure:
         for at, row in zip(x, records(own), strict=True):
             if np.isfinite(row["mean"]):
                 draw_mean(axes, at, row, lods=lods, colour=colour)
-    axes.set_xticks(
-        range(len(distances)), [distance_label(d, tables, joint="\n") for d in distances]
-    )
+    room = width - 1.1 - upright_in(lods)  # beside the axis and the legend
+    name_columns(axes, distances, tables, width_in=room / len(distances))
     axes.set_xlim(-0.4, len(distances) - 0.6)
     rating_axis(axes, tables.scale)
     lod_legend(figure, lods[::-1], lods, is_beside=True)

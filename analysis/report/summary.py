@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from analysis.charts.material import Material
+from analysis.charts.names import chart_notes
 from analysis.charts.style import SIMULATED
 from analysis.decision.effect_sentences import effect_answers
 from analysis.decision.policy_sentences import policy_answer
@@ -23,13 +24,18 @@ BY_SIZE: Final = "by size"  # the answer along the iris's size stands beside tho
 
 @dataclass(frozen=True)
 class Summary:
-    """What an analysis found and wrote; ``findings`` describe, ``verdicts`` decide, by distance."""
+    """What an analysis found and wrote; ``findings`` describe, ``verdicts`` decide, by distance.
+
+    ``notes`` say what was left out or read otherwise, ``chart_notes`` what charts do with names.
+    """
 
     findings: tuple[Finding, ...]
     verdicts: tuple[tuple[str, str], ...]
     limits: tuple[str, ...]
     design: tuple[str, ...]
     quality: tuple[str, ...]
+    notes: tuple[str, ...]
+    chart_notes: tuple[str, ...]
     is_simulated: bool
     people: int
     ratings: int
@@ -37,11 +43,13 @@ class Summary:
     files: tuple[Path, ...]
 
     def lines(self) -> list[str]:
-        """Return the answer as lines of plain text for a terminal."""
+        """Return the answer, and what to know about it, as lines of plain text for a terminal."""
         decided = [f"{distance}: {sentence}" for distance, sentence in self.verdicts]
         described = [f"{finding.distance}: {finding.sentence}" for finding in self.findings]
         label = [SIMULATED] if self.is_simulated else []
-        return [*label, *((decided or described) if self.ratings else self.limits[:1])]
+        found = (decided or described) if self.ratings else self.limits[:1]
+        noted = [f"Note: {note}" for note in (*self.notes, *self.chart_notes)]
+        return [*label, *found, *noted]
 
 
 def summarise(
@@ -60,6 +68,8 @@ def summarise(
         limits=(*limits(tables, parts.audit, own), *own.warnings()),
         design=tuple(parts.audit.facts()),
         quality=tuple(quality_statements(tables)),
+        notes=tables.notes,
+        chart_notes=tuple(chart_notes(tables)),
         is_simulated=tables.is_simulated,
         people=rated["participant"].nunique(),
         ratings=len(rated),

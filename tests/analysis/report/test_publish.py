@@ -192,7 +192,7 @@ def test_odd_data_give_an_answer_or_a_statement(name: str, tmp_path: Path) -> No
         "all missing": "All ratings are missing, so nothing can be said about realism.",
         "ratings all alike": "only ultra was shown to be enough: for low it was not shown",
         "one rating": "so nothing can be compared",
-        "repeated rows": "ultra",
+        "repeated rows": "Note: ratings.csv: 8 repeated rows were left out.",
         "catch clips only": "so nothing can be compared",
         "comparisons only": "There are no ratings yet, so nothing can be said about realism.",
     }
