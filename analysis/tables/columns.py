@@ -65,6 +65,7 @@ _TRIAL: Final = (
     Column("iris", "text", "name of the iris in the study's definition, where it has several"),
     Column("iris_seed", "integer", "number from which the iris was made", low=0),
     Column("iris_colour", "text", 'colour of the iris; "photograph" if it was taken from one'),
+    Column("crowd", "integer", "number of other characters in the scene", low=0),
 )
 
 _CIRCUMSTANCES: Final = (

@@ -59,6 +59,7 @@ def trial_row(study: Study, person: Collected, collected: CollectedTrial) -> Row
         **angles.shown(plays, width_px=width_px),
         "orbit_direction": row.orbit_direction,
         **_iris(study.definition, clip),
+        "crowd": study.definition.scene_of(clip).crowd,
         "is_practice": trial.is_practice,
         "is_catch": clip.is_catch,
         "is_warm_up": study.definition.order.is_warm_up(

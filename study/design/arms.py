@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from study.design.definition import StudyDefinition
-from study.design.pairings import Clip
+from study.design.pairings import Clip, Condition
 from study.design.per_person import Block
 
 
@@ -86,7 +86,7 @@ class _Need:
         self.blocks = blocks
         self.cells: Counter[tuple[str, int | None]] = Counter()
         self.directions: Counter[str] = Counter()
-        self.conditions: Counter[tuple[str, ...]] = Counter()
+        self.conditions: Counter[Condition] = Counter()
         self.clips: Counter[str] = Counter()
         for arm, count in counts.items():
             self.cells[arm.orbit_direction, arm.block] += count

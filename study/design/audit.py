@@ -38,7 +38,7 @@ def audit(definition: StudyDefinition) -> Audit:
 
 def _pairings(definition: StudyDefinition) -> list[Clip]:
     """Return the trials' clips, of those that differ in the iris alone the first."""
-    firsts: dict[tuple[str, ...], Clip] = {}
+    firsts: dict[tuple[object, ...], Clip] = {}
     for clip in definition.trial_clips:
         firsts.setdefault(clip.condition if clip.iris else (clip.id,), clip)
     return list(firsts.values())

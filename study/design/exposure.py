@@ -107,6 +107,9 @@ def _kinds(definition: StudyDefinition) -> Iterator[tuple[str, list[Hashable], T
     if definition.irises:
         yield "each iris", _unique(c.iris for c in pairs), lambda v: (c.iris for c in v.clips)
         yield "each pairing with each iris", [c.id for c in pairs], _names
+    crowds = _unique(definition.scene_of(c).crowd for c in pairs)
+    if len(crowds) > 1:
+        yield "each crowd", crowds, lambda v: (definition.scene_of(c).crowd for c in v.clips)
     yield "each equal pair", [c.id for c in catch], _names
     yield "each orbit direction", [*directions], lambda v: [v.arm.orbit_direction]
     turned = list(product(directions, _unique(c.condition for c in pairs)))

@@ -112,7 +112,10 @@ _LATER: Final[Mapping[str, Any]] = {
     "cube_size": "table",
     **dict.fromkeys(("device_check", "calibration", "eyesight"), None),
     **dict.fromkeys(("iris", "per_person", "breaks"), None),
-    **dict.fromkeys(("irises", "gold", "attention"), ()),  # an empty list, or an empty table
+    "crowd": None,  # of a clip; a scene's is a number
+    **dict.fromkeys(
+        ("irises", "crowds", "gold", "attention"), ()
+    ),  # an empty list, or an empty table
     "warm_up": 0,
     **dict.fromkeys(("completion", "recruiting"), None),
     **dict.fromkeys(("minimum_age", "motion_warning", "withdrawal", "backup_days", "health"), None),

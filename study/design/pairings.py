@@ -1,18 +1,20 @@
 """Pairings of LoDs at distances: clips written out, clips generated from factors, catch clips.
 
-Pure. A pairing names LoDs and a distance; sizes, light and iris come from the rest of the study.
+Pure. A pairing names LoDs and a distance, and an iris or a crowd where a study has several; sizes
+and light come from the rest of the study.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Annotated, Literal
+from itertools import product
+from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field, field_validator
 
 from renderer.detail import EFFECTS, LEVELS, Detail
 from study.design.faults import refuse, unknown
-from study.design.parts import Distance, Motion, Name, Part
+from study.design.parts import Distance, Motion, Name, Part, People
 
 
 class LodRow(Part):
@@ -51,10 +53,25 @@ def detail_of(lods: dict[str, LodRow], name: str) -> Detail:
     return detail_of(lods, row.base).with_levels(**row.levels())
 
 
+class Condition(NamedTuple):
+    """What a clip compares and from where: its LoDs, distance, motion and crowd."""
+
+    distance: str
+    left: str
+    right: str
+    motion: str
+    crowd: int | None
+
+    def swapped(self) -> Condition:
+        """Exchange left and right."""
+        return self._replace(left=self.right, right=self.left)
+
+
 class Clip(Part):
     """One pairing at one distance. Left and right are the viewer's.
 
-    ``iris`` names one of the study's irises; None is that of ``[eye]``.
+    ``iris`` names one of the study's irises; None is that of ``[eye]``. ``crowd`` is the number of
+    other characters; None is that of ``[scene]``.
     """
 
     id: Name
@@ -63,6 +80,7 @@ class Clip(Part):
     right: str
     motion: Motion = "orbit"
     iris: str | None = None
+    crowd: People | None = None
 
     @property
     def is_catch(self) -> bool:
@@ -70,9 +88,9 @@ class Clip(Part):
         return self.left == self.right
 
     @property
-    def condition(self) -> tuple[str, str, str, str]:
-        """What is compared and from where: all but the iris."""
-        return self.distance, self.left, self.right, self.motion
+    def condition(self) -> Condition:
+        """What is compared, from where and amid whom: all but the iris."""
+        return Condition(self.distance, self.left, self.right, self.motion, self.crowd)
 
     @property
     def pairing(self) -> str:
@@ -88,21 +106,25 @@ class CatchClip(Part):
     lod: str
     motion: Motion = "orbit"
     iris: str | None = None
+    crowd: People | None = None
 
     def clip(self) -> Clip:
         """Return the clip that shows this LoD twice."""
         return Clip(
-            id=self.id or _with_iris(f"catch-{self.distance}-{self.lod}", self.iris),
+            id=self.id or _named(f"catch-{self.distance}-{self.lod}", self.crowd, self.iris),
             distance=self.distance,
             left=self.lod,
             right=self.lod,
             motion=self.motion,
             iris=self.iris,
+            crowd=self.crowd,
         )
 
 
-def _with_iris(name: str, iris: str | None) -> str:
-    return name if iris is None else f"{name}-{iris}"
+def _named(pairing: str, crowd: int | None, iris: str | None) -> str:
+    """Return a clip's id: its pairing, then crowd and iris where it has its own."""
+    ends = (None if crowd is None else f"crowd-{crowd}", iris)
+    return "-".join([pairing, *(end for end in ends if end is not None)])
 
 
 class Factors(Part):
@@ -110,7 +132,7 @@ class Factors(Part):
 
     ``sides``: "given" puts ``lods`` on the left, "swapped" on the right, "both" shows each pairing
     both ways round, "alternating" changes sides from one pairing to the next. With ``irises``
-    every pairing is shown with each of them.
+    every pairing is shown with each of them, with ``crowds`` amid each of them.
     """
 
     distances: Annotated[tuple[Distance, ...], Field(min_length=1)]
@@ -119,11 +141,20 @@ class Factors(Part):
     sides: Literal["given", "swapped", "both", "alternating"] = "both"
     motion: Motion = "orbit"
     irises: tuple[str, ...] = ()
+    crowds: tuple[People, ...] = ()
+
+    @field_validator("crowds")
+    @classmethod
+    def _check_crowds(cls, crowds: tuple[int, ...]) -> tuple[int, ...]:
+        if len(set(crowds)) < len(crowds):
+            raise refuse("a crowd is listed twice")
+        return crowds
 
     def clips(self) -> Iterator[Clip]:
         """Generate the clips, named ``near-low-ultra``: distance, left, right.
 
-        An approach's names begin with ``approach-``, those of several irises end with theirs.
+        An approach's names begin with ``approach-``; those of several crowds or irises end with
+        theirs.
         """
         pairs = [
             (distance, lod, other)
@@ -141,14 +172,15 @@ class Factors(Part):
 
     def _pair(self, distance: str, left: str, right: str) -> Iterator[Clip]:
         start = "approach-" if self.motion == "approach" else ""
-        for iris in self.irises or (None,):
+        for crowd, iris in product(self.crowds or (None,), self.irises or (None,)):
             yield Clip(
-                id=_with_iris(f"{start}{distance}-{left}-{right}", iris),
+                id=_named(f"{start}{distance}-{left}-{right}", crowd, iris),
                 distance=distance,
                 left=left,
                 right=right,
                 motion=self.motion,
                 iris=iris,
+                crowd=crowd,
             )
 
 

@@ -87,6 +87,7 @@ def clip_value(field: str) -> AfterValidator:
 Distance = Annotated[str, clip_value("distance")]
 Direction = Annotated[str, clip_value("orbit_direction")]
 Motion = Annotated[str, clip_value("motion")]
+People = Annotated[Whole, clip_value("crowd")]
 
 
 class Size(Part):
@@ -188,4 +189,4 @@ class Scene(_PartOfClip):
     environment_exposure_ev: Annotated[Real, clip_value("environment_exposure_ev")] = 0.0
     sun_azimuth_deg: Annotated[Real, clip_value("sun_azimuth_deg")] = -15.0
     sun_elevation_deg: Annotated[Real, clip_value("sun_elevation_deg")] = 42.0
-    crowd: Annotated[Whole, clip_value("crowd")] = 5
+    crowd: People = 5

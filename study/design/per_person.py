@@ -16,13 +16,12 @@ from typing import Annotated, Final
 from pydantic import Field
 
 from study.design.faults import Fault
-from study.design.pairings import Clip
+from study.design.pairings import Clip, Condition
 from study.design.parts import Part, Whole
 
 MOST_BLOCKS: Final = 240  # more are never filled, and preparing would take seconds
 
 Block = tuple[Clip, ...]
-Condition = tuple[str, str, str, str]
 
 
 class PerPerson(Part):
@@ -66,7 +65,7 @@ def _ring(stratum: Sequence[Clip]) -> list[list[Clip]]:
         by_condition.setdefault(clip.condition, []).append(clip)
     pairs: list[Condition] = []  # each as the file shows it first
     for condition in by_condition:
-        if _swapped(condition) not in pairs:
+        if condition.swapped() not in pairs:
             pairs.append(condition)
     if len(by_condition) != 2 * len(pairs):
         return list(by_condition.values())
@@ -75,13 +74,8 @@ def _ring(stratum: Sequence[Clip]) -> list[list[Clip]]:
         pair = pairs[place % len(pairs)]
         # With an even number of pairs the second round would repeat the first round's sides.
         is_second = place // len(pairs) == 1 and len(pairs) % 2 == 0
-        ring.append(by_condition[pair if (place + is_second) % 2 == 0 else _swapped(pair)])
+        ring.append(by_condition[pair if (place + is_second) % 2 == 0 else pair.swapped()])
     return ring
-
-
-def _swapped(condition: Condition) -> Condition:
-    distance, left, right, motion = condition
-    return distance, right, left, motion
 
 
 def _window(ring: Sequence[Sequence[Clip]], number: int, share: int, *, place: int) -> list[Clip]:

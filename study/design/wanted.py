@@ -16,7 +16,7 @@ from renderer.lod.choice import LodPolicy
 from study.design.approach import policy_of
 from study.design.contents import Contents
 from study.design.pairings import Clip, all_clips, detail_of
-from study.design.parts import Eye, Size
+from study.design.parts import Eye, Scene, Size
 from study.design.per_person import Block, blocks_of
 
 
@@ -67,6 +67,12 @@ class WithClips(Contents):
             return self.eye
         return self.eye.model_copy(update=self.irises[clip.iris].fields())
 
+    def scene_of(self, clip: Clip) -> Scene:
+        """Return what is around the eyes of a clip."""
+        if clip.crowd is None:
+            return self.scene
+        return self.scene.model_copy(update={"crowd": clip.crowd})
+
     def detail(self, lod: str) -> Detail:
         """Return a LoD's seven levels; raises KeyError for a name that the file does not define.
 
@@ -112,7 +118,7 @@ class WithClips(Contents):
             height=size.height,
             preset=self.preset,
             **self.eye_of(clip).model_dump(),
-            **self.scene.model_dump(),
+            **self.scene_of(clip).model_dump(),
         )
 
     def wanted_specs(self) -> list[WantedClip]:

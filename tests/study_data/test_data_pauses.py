@@ -134,6 +134,7 @@ def test_tables_flag_warm_up_gold_and_iris(walk: Any) -> None:
     assert rows["is_catch"].tolist() == [False, False, False, False, True]
     assert rows["iris"].isna().all()
     assert set(zip(rows["iris_seed"], rows["iris_colour"], strict=True)) == {(1, "blue")}
+    assert set(rows["crowd"]) == {5}
 
 
 def test_a_study_without_checks_leaves_their_columns_empty(
@@ -151,11 +152,12 @@ def test_a_study_without_checks_leaves_their_columns_empty(
     assert row["order_code"] == f"0/0/{walk.participant.seed}"
 
 
-def test_tables_name_the_iris_of_each_clip_and_the_codebook_all_of_them(
+def test_tables_name_iris_and_crowd_of_each_clip_and_the_codebook_all_irises(
     db: Database, raw: dict[str, Any], enrol_into: Any
 ) -> None:
     raw["irises"] = {"dark": {"iris_seed": 4, "iris_colour": "brown"}, "light": {"iris_seed": 2}}
     raw["clips"] = [{**clip, "iris": "dark"} for clip in raw["clips"]]
+    raw["clips"][1]["crowd"] = 0
     raw |= {"gold": [], "attention": [], "breaks": None, "key": "two", "order": {"trials": "file"}}
     study = studies.register(db, parse_definition(raw))
     walk = enrol_into(study)
@@ -169,6 +171,7 @@ def test_tables_name_the_iris_of_each_clip_and_the_codebook_all_of_them(
         ["b", "dark", 4, "brown"],
         ["catch-far-low", None, 1, "blue"],
     ]
+    assert found.comparisons["crowd"].tolist() == [5, 5, 0, 5]
     columns = {column["name"]: column for column in found.codebook["tables"]["ratings"]}
     assert columns["iris"]["accepted"] == ["dark", "light"]
 
