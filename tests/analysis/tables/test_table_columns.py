@@ -21,8 +21,8 @@ def test_ratings_have_the_contracts_columns_in_its_order() -> None:
         "iris_px, iris_deg, iris_deg_se, shown_scale, shown_scale_se, orbit_direction, iris, "
         "iris_seed, iris_colour, crowd, eye, lod, lod_rank, other_lod, texture, refraction, "
         "reflection, subsurface, caustics, tessellation, sclera, rating, is_practice, is_catch, "
-        "is_warm_up, is_gold, certified, uncertified_because, dropped_frames, views, response_ms, clock_ms, "
-        "started_at"
+        "is_warm_up, is_gold, certified, uncertified_because, dropped_frames, views, response_ms, "
+        "clock_ms, started_at"
     )
     assert columns.column_names("ratings") == tuple(contract.split(", "))
 
