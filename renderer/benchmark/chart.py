@@ -15,6 +15,7 @@ from renderer.benchmark.panels import (
     draw_lods,
     draw_samples,
 )
+from renderer.benchmark.processor_panel import asking_rows, draw_processor
 from renderer.benchmark.result import Bench, Cost
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ def write_chart(bench: Bench, stem: Path) -> list[Path]:
     from matplotlib.figure import Figure
 
     panels = [(title, draw, rows) for part, title, draw in _PANELS if (rows := bench.of_part(part))]
+    if asking := asking_rows(bench):
+        panels.append(("The processor's part of a frame", draw_processor, asking))
     if not panels:
         return []
     across = min(len(panels), 2)

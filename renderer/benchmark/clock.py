@@ -2,12 +2,12 @@
 
 Software GL draws on worker threads after a timer query has ended (1.5 ms were told for a draw of
 61 ms), so only the time until the picture is there counts. A GPU's pictures stay on the GPU, as a
-game's do: its clock counts drawing alone, neither Python nor reading back.
+game's do: its clock tells how long it works on a frame that has been handed over (``gpu_time``).
+What a game sees is neither, but frames that follow one another: a ``Row``.
 """
 
 from __future__ import annotations
 
-import statistics
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,6 +15,8 @@ from typing import Final, Protocol
 
 import moderngl
 
+from renderer.benchmark.gpu_time import GpuTimer
+from renderer.benchmark.processor import Asked, Watch
 from renderer.frame.frame import Frame
 from renderer.gl.context import is_software
 
@@ -24,6 +26,9 @@ WARM_UP: Final = 1  # the first frame builds the eyes and compiles their shaders
 AZIMUTHS_DEG: Final = (-50.0, 35.0, -20.0, 5.0, 50.0, -35.0, 20.0, -5.0, 0.0)
 NUDGE_DEG: Final = 0.01  # between the frames of a round: nothing kept for a camera is there yet
 FPS: Final = 30
+ROW: Final = 30  # frames one after the other: a second of a clip
+ROW_DEG: Final = 0.8  # between them: an orbit of 120 degrees in 5 s
+TRY_S: Final = 1e-3  # between tries of one frame: people who stood still would cost nothing
 
 
 class Timed(Protocol):
@@ -38,7 +43,28 @@ class Timed(Protocol):
         ...
 
 
-Timer = Callable[[Timed, float, float], float]
+@dataclass(frozen=True)
+class Row:
+    """ROW frames submitted one after the other: ms of wall time each, and of it in reading back."""
+
+    ms: float
+    wait_ms: float
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One frame: ``ms`` by the clock, and what it asked of the processor.
+
+    ``has_gaps``: a GPU's time that counts waiting for commands. ``row``: frames like it in a row.
+    """
+
+    ms: float
+    asked: Asked
+    has_gaps: bool = False
+    row: Row | None = None
+
+
+Timer = Callable[[Timed, float, float], Shot]
 
 
 def clock_of(gl_renderer: str) -> str:
@@ -46,61 +72,73 @@ def clock_of(gl_renderer: str) -> str:
     return WALL if is_software(gl_renderer) else QUERY
 
 
-def timer_of(gl: moderngl.Context, clock: str) -> Timer:
-    """Return a function of renderer, azimuth (degrees) and scene time (s): a frame's ms."""
+def timer_of(gl: moderngl.Context, clock: str, *, watch: Watch, has_rows: bool = False) -> Timer:
+    """Return a function of renderer, azimuth (degrees) and scene time (s).
 
-    def wall(frames: Timed, azimuth_deg: float, time_s: float) -> float:
+    With ``has_rows`` a GPU draws frames in a row, too; software GL takes as long for each of them.
+    """
+
+    def wall(frames: Timed, azimuth_deg: float, time_s: float) -> Shot:
         gl.finish()
+        watch.begin()
         started = time.perf_counter()
         frames.render(azimuth_deg, time_s=time_s)
-        return (time.perf_counter() - started) * 1e3
+        ms = (time.perf_counter() - started) * 1e3
+        return Shot(ms, watch.asked())
 
-    def query(frames: Timed, azimuth_deg: float, time_s: float) -> float:
-        gl.finish()
-        spent = gl.query(time=True)
-        with spent:
-            frames.show(azimuth_deg, time_s=time_s)
-        return int(spent.elapsed) / 1e6
+    if clock == WALL:
+        return wall
+    timer = GpuTimer(gl)
 
-    return {WALL: wall, QUERY: query}[clock]
+    def query(frames: Timed, azimuth_deg: float, time_s: float) -> Shot:
+        asked: list[Asked] = []
+
+        def submit(number: int) -> None:
+            watch.begin()
+            frames.show(azimuth_deg, time_s=time_s + TRY_S * number)
+            asked.append(watch.asked())
+
+        spent = timer.time(submit)
+        row = _in_a_row(gl, watch, frames, azimuth_deg, time_s) if has_rows else None
+        return Shot(spent.ms, asked[-1], spent.has_gaps, row)
+
+    return query
 
 
-def interleaved(variants: Sequence[Timed], *, rounds: int, timer: Timer) -> list[list[float]]:
+def _in_a_row(
+    gl: moderngl.Context, watch: Watch, frames: Timed, azimuth_deg: float, time_s: float
+) -> Row:
+    """Submit ROW frames one after the other, as a game does, and wait for the last one only.
+
+    The first one's submission and the last one's drawing have nothing beside them, which makes a
+    row at most 1 / ROW longer than endless ones.
+    """
+    gl.finish()
+    watch.begin()
+    started = time.perf_counter()
+    for number in range(ROW):
+        turned_deg = ROW_DEG * (number - ROW / 2)
+        frames.show(azimuth_deg + turned_deg, time_s=time_s + (number + 1) / FPS)
+    gl.finish()
+    ms = (time.perf_counter() - started) * 1e3
+    return Row(ms / ROW, watch.asked().wait_ms / ROW)
+
+
+def interleaved(variants: Sequence[Timed], *, rounds: int, timer: Timer) -> list[list[Shot]]:
     """Time variants in turn, A B, B A, A B: what slows the machine for a while slows them all.
 
-    Returns a list of ``rounds`` milliseconds per variant. Within a round all have the same camera
-    but for NUDGE_DEG; time runs on from frame to frame, because people who stand still would cost
-    nothing. Every other round runs backwards, so that nobody is always first.
+    Returns a list of ``rounds`` shots per variant. Within a round all have the same camera but for
+    NUDGE_DEG; time runs on from frame to frame, because people who stand still would cost nothing.
+    Every other round runs backwards, so that nobody is always first.
     """
-    times: list[list[float]] = [[] for _ in variants]
+    shots: list[list[Shot]] = [[] for _ in variants]
     step = 0
     for number in range(-WARM_UP, rounds):
         azimuth_deg = AZIMUTHS_DEG[number % len(AZIMUTHS_DEG)]
         order = list(enumerate(variants))
         for turn, (place, frames) in enumerate(order if number % 2 == 0 else order[::-1]):
-            ms = timer(frames, azimuth_deg + NUDGE_DEG * turn, step / FPS)
+            shot = timer(frames, azimuth_deg + NUDGE_DEG * turn, step / FPS)
             step += 1
             if number >= 0:
-                times[place].append(ms)
-    return times
-
-
-@dataclass(frozen=True)
-class Spread:
-    """Median and median absolute deviation of ``n`` milliseconds."""
-
-    median: float
-    mad: float
-    n: int
-
-
-def spread_of(values: Sequence[float]) -> Spread:
-    """Return the median of some milliseconds and how far they lie from it."""
-    median = statistics.median(values)
-    deviation = statistics.median(abs(value - median) for value in values)
-    return Spread(round(median, 3), round(deviation, 3), len(values))
-
-
-def difference(with_it: Sequence[float], without: Sequence[float]) -> Spread:
-    """Return the spread of the rounds' differences: with minus without."""
-    return spread_of([a - b for a, b in zip(with_it, without, strict=True)])
+                shots[place].append(shot)
+    return shots

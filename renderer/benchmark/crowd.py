@@ -8,12 +8,13 @@ with 60 eyes, each at the LoD that its size asks for.
 from __future__ import annotations
 
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
-from renderer.benchmark.clock import WARM_UP, spread_of
+from renderer.benchmark.clock import WARM_UP
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import BOTH, Stand, Step
 from renderer.clip import CROWDS
+from renderer.crowd.group import GroupRenderer
 from renderer.detail import Detail
 
 PART: Final = "crowd"
@@ -49,10 +50,10 @@ def _weight(crowds: tuple[int, ...], rounds: int) -> float:
 def _measure(stand: Stand, bench: Bench, *, crowds: tuple[int, ...]) -> None:
     detail = Detail.uniform(LOD)
     specs = [stand.spec(detail, DISTANCE, eyes=BOTH, crowd=crowd) for crowd in crowds]
-    times = stand.time([stand.frames(spec, eyes=BOTH) for spec in specs])
+    shots = stand.time([stand.frames(spec, eyes=BOTH) for spec in specs], are_whole=True)
     bench.rows.extend(
-        stand.row(PART, spec, spread_of(ms), lod=LOD, eyes=len(BOTH), crowd=spec.crowd)
-        for spec, ms in zip(specs, times, strict=True)
+        stand.frame_row(PART, spec, own, lod=LOD, eyes=len(BOTH), crowd=spec.crowd)
+        for spec, own in zip(specs, shots, strict=True)
     )
 
 
@@ -60,19 +61,21 @@ def _measure_groups(stand: Stand, bench: Bench, *, crowds: tuple[int, ...]) -> N
     detail = Detail.uniform(LOD)
     specs = [stand.spec(detail, DISTANCE, eyes=BOTH, crowd=crowd) for crowd in crowds]
     groups = [stand.studio.group_renderer(spec) for spec in specs]
-    times = stand.time(groups)
-    for spec, group, ms in zip(specs, groups, times, strict=True):
-        eyes = group.eyes_drawn
-        largest = max((eye.iris_px for eye in eyes), default=0.0)  # small ones are painted
-        bench.rows.append(
-            stand.row(
-                PART,
-                spec,
-                spread_of(ms),
-                distance=GROUP,
-                iris_px=round(largest, 2),
-                lod=BY_SIZE,
-                eyes=len(eyes),
-                crowd=spec.crowd,
-            )
-        )
+    shots = stand.time(groups, are_whole=True)
+    bench.rows.extend(
+        stand.frame_row(PART, spec, own, **told_of(group))
+        for spec, group, own in zip(specs, groups, shots, strict=True)
+    )
+
+
+def told_of(group: GroupRenderer) -> dict[str, Any]:
+    """Return what a row tells of a group after its frames."""
+    eyes = group.eyes_drawn
+    largest = max((eye.iris_px for eye in eyes), default=0.0)  # small ones are painted
+    return {
+        "distance": GROUP,
+        "iris_px": round(largest, 2),
+        "lod": BY_SIZE,
+        "eyes": len(eyes),
+        "crowd": group.spec.crowd,
+    }

@@ -10,8 +10,9 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from renderer.benchmark.clock import WARM_UP, difference, spread_of
+from renderer.benchmark.clock import WARM_UP
 from renderer.benchmark.result import Bench
+from renderer.benchmark.spread import difference
 from renderer.benchmark.stand import BOTH, Stand, Step
 from renderer.clip import CUBE_SIZES
 from renderer.crowd.cube import CrowdCube
@@ -41,36 +42,36 @@ def _measure(stand: Stand, bench: Bench, *, size_px: int) -> None:
     off = stand.spec(BASE.with_levels(reflection="off"))
     specs = {kind: stand.spec(BASE.with_levels(reflection=level)) for kind, level in LEVEL.items()}
     frames = [mirroring(stand, kind, size_px) for kind in LEVEL]
-    without, *times = stand.time([stand.frames(off), *frames])
+    without, *shots = stand.time([stand.frames(off), *frames])
     bench.rows.extend(
         stand.row(
             PART,
             specs[kind],
-            difference(ms, without),
+            difference(own, without),
             effect="reflection",
             level=LEVEL[kind],
             base="ultra",
             cube=kind,
             cube_px=size_px,
         )
-        for kind, ms in zip(LEVEL, times, strict=True)
+        for kind, own in zip(LEVEL, shots, strict=True)
     )
 
 
 def _measure_clips(stand: Stand, bench: Bench) -> None:
     specs = [stand.spec(BASE, eyes=BOTH, cube_size=choice) for choice in CUBE_SIZES]
-    times = stand.time([stand.frames(spec, eyes=BOTH) for spec in specs])
+    shots = stand.time([stand.frames(spec, eyes=BOTH) for spec in specs], are_whole=True)
     bench.rows.extend(
-        stand.row(
+        stand.frame_row(
             PART,
             spec,
-            spread_of(ms),
+            own,
             lod="ultra",
             eyes=len(BOTH),
             cube=spec.cube_size,
             cube_px=cube_px(BASE, spec),
         )
-        for spec, ms in zip(specs, times, strict=True)
+        for spec, own in zip(specs, shots, strict=True)
     )
 
 

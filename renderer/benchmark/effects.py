@@ -11,8 +11,9 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from renderer.benchmark.clock import WARM_UP, difference
+from renderer.benchmark.clock import WARM_UP
 from renderer.benchmark.result import Bench
+from renderer.benchmark.spread import difference
 from renderer.benchmark.stand import Stand, Step
 from renderer.detail import EFFECTS, LEVELS, STANDARD_LODS, TABLE, Detail
 
@@ -53,8 +54,8 @@ def _measure(stand: Stand, bench: Bench, *, effect: str, base: str, is_quick: bo
     variants = [stand.kept_frames(s) if s == whole else stand.frames(s) for s in specs]
     off, *others = stand.time(variants)
     bench.rows.extend(
-        stand.row(PART, spec, difference(ms, off), effect=effect, level=level, base=base)
-        for level, spec, ms in zip(levels[1:], specs[1:], others, strict=True)
+        stand.row(PART, spec, difference(own, off), effect=effect, level=level, base=base)
+        for level, spec, own in zip(levels[1:], specs[1:], others, strict=True)
     )
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from renderer.benchmark.clock import WARM_UP, spread_of
+from renderer.benchmark.clock import WARM_UP
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import BOTH, ONE, Stand, Step
 from renderer.clip import DISTANCES
@@ -36,8 +36,8 @@ def lod_steps(rounds: int, *, is_quick: bool) -> list[Step]:
 
 def _measure(stand: Stand, bench: Bench, *, distance: str, eyes: tuple[int, ...]) -> None:
     specs = [stand.spec(Detail.uniform(lod), distance, eyes=eyes) for lod in STANDARD_LODS]
-    times = stand.time([stand.frames(spec, eyes=eyes) for spec in specs])
+    shots = stand.time([stand.frames(spec, eyes=eyes) for spec in specs], are_whole=True)
     bench.rows.extend(
-        stand.row(PART, spec, spread_of(ms), lod=lod, eyes=len(eyes))
-        for lod, spec, ms in zip(STANDARD_LODS, specs, times, strict=True)
+        stand.frame_row(PART, spec, own, lod=lod, eyes=len(eyes))
+        for lod, spec, own in zip(STANDARD_LODS, specs, shots, strict=True)
     )

@@ -37,7 +37,7 @@ def draw_lods(axes: Axes, rows: list[Cost]) -> None:
                 style |= {"ls": ":", "mfc": "white"}
             axes.plot(x, y, lw=1.3, **style)
             if eyes == 2:
-                _label(axes, x[-1], y[-1], lod, COLOURS[lod])
+                label(axes, x[-1], y[-1], lod, COLOURS[lod])
     axes.set_xscale("log")
     axes.set_yscale("log")
     sizes = sorted({row.iris_px for row in rows})
@@ -62,7 +62,7 @@ def draw_effects(axes: Axes, rows: list[Cost]) -> None:
                     row.ms_median, y, xerr=row.ms_mad, color=COLOURS[level], marker=MARKERS[level],
                     ms=4.5, lw=1.0,
                 )  # fmt: skip
-                _label(axes, row.ms_median + row.ms_mad, y, level, COLOURS[level])
+                label(axes, row.ms_median + row.ms_mad, y, level, COLOURS[level])
     axes.axvline(0.0, color=QUIET, lw=0.8)
     axes.set_yticks(range(len(EFFECTS)), list(reversed(EFFECTS)))
     axes.set_xlabel(f"ms with minus without, others at {base}, one eye", fontsize=SMALL)
@@ -78,14 +78,14 @@ def draw_samples(axes: Axes, rows: list[Cost]) -> None:
         for row, ms, rms in zip(own, x, y, strict=True):
             name = f"ours, {row.level}" if is_ours else f"{row.samples} samples"
             below = is_ours and row.level == "ultra"  # both of ours may lie at the same height
-            _label(axes, ms, rms, name, colour, up=-8 if below else 7)
+            label(axes, ms, rms, name, colour, up=-8 if below else 7)
     axes.set_yscale("log")
     axes.minorticks_off()
     _plain_log(axes, [row.rms_percent or 0.0 for row in rows])
     axes.set_xlabel("ms of subsurface, one eye", fontsize=SMALL)
     axes.set_ylabel("rms error, %", fontsize=SMALL)
     axes.margins(x=0.2, y=0.12)
-    axes.set_xlim(left=min(0.0, *(row.ms_median for row in rows)))
+    axes.set_xlim(left=min(0.0, axes.get_xlim()[0]))
 
 
 def draw_cubes(axes: Axes, rows: list[Cost]) -> None:
@@ -96,7 +96,7 @@ def draw_cubes(axes: Axes, rows: list[Cost]) -> None:
         error = [row.ms_mad for row in own]
         axes.errorbar(x, y, yerr=error, color=colour, marker=marker, ms=4.5, lw=1.3)
         if own:
-            _label(axes, x[-1], y[-1], kind, colour)
+            label(axes, x[-1], y[-1], kind, colour)
     axes.set_xscale("log", base=2)
     sizes = sorted({row.cube_px or 0 for row in rows if row.effect})
     axes.set_xticks(sizes, [str(size) for size in sizes])
@@ -118,15 +118,16 @@ def draw_crowd(axes: Axes, rows: list[Cost]) -> None:
         told = (
             "group, all eyes by size" if own[-1].eyes > 2 else f"{distance}, two {own[-1].lod} eyes"
         )
-        _label(axes, x[-1], y[-1], told, colour)
+        label(axes, x[-1], y[-1], told, colour)
     axes.set_xticks(sorted({row.crowd or 0 for row in rows}))
     axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("other people in the scene", fontsize=SMALL)
+    axes.set_xlabel("people: others in the scene, or in the group", fontsize=SMALL)
     axes.set_ylabel("ms per frame", fontsize=SMALL)
-    axes.margins(x=0.3)
+    axes.margins(x=0.1)
+    axes.set_xlim(right=1.75 * max(row.crowd or 0 for row in rows) or None)  # room for labels
 
 
-def _label(axes: Axes, x: float, y: float, text: str, colour: str, *, up: float = 0.0) -> None:
+def label(axes: Axes, x: float, y: float, text: str, colour: str, *, up: float = 0.0) -> None:
     """Write beside a point, ``up`` points of type above its middle."""
     axes.annotate(
         text, (x, y), xytext=(6, up), textcoords="offset points", va="center", fontsize=SMALL,

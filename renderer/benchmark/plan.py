@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from renderer.benchmark.aims import aim_steps
 from renderer.benchmark.clock import QUERY, WALL
 from renderer.benchmark.crowd import crowd_steps
 from renderer.benchmark.cubes import cube_steps
@@ -55,6 +56,7 @@ def steps_of(parts: Sequence[str], *, is_quick: bool) -> list[Step]:
         "samples": sample_steps(rounds, is_quick=is_quick),
         "cubes": cube_steps(rounds, is_quick=is_quick),
         "crowd": crowd_steps(rounds, is_quick=is_quick),
+        "aims": aim_steps(rounds, is_quick=is_quick),
         "work": work_steps(is_quick=is_quick),
         "startup": startup_steps(is_quick=is_quick),
         "memory": memory_steps(is_quick=is_quick),

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Final
+
+from renderer.benchmark.cells import Table
+from renderer.benchmark.clock import WALL
 from renderer.benchmark.result import Bench
-from renderer.benchmark.tables import Table, tables_of
+from renderer.benchmark.tables import tables_of
+
+BUSY: Final = 1.75  # times its own load: what tells that a benchmark was not alone
 
 
 def as_text(bench: Bench) -> str:
@@ -19,10 +25,19 @@ def as_markdown(bench: Bench) -> str:
 def _about(bench: Bench) -> str:
     about = bench.about
     quick = ", in a hurry (--quick)" if about.is_quick else ""
-    return (
+    loads = [row.load for row in bench.rows]
+    meanwhile = f", {min(loads):g} to {max(loads):g} meanwhile" if loads else ""
+    conditions = (
         f"{about.renderer} ({about.gl_version}); {about.processor}, {about.cores} cores; "
-        f"{about.size} pixels; {about.clock}; load {about.load_before:g} before; "
+        f"{about.size} pixels; {about.clock}; load {about.load_before:g} before{meanwhile}; "
         f"{about.seconds / 60:.1f} min{quick}; code {about.code_version}"
+    )
+    own = about.cores if about.clock == WALL else 1
+    if max(loads, default=0.0) <= own * BUSY:
+        return conditions
+    return (
+        f"{conditions}\n\nOther work was running: the benchmark itself makes a load of about "
+        f"{own}. Times are too long, differences uncertain; measure again on a quiet machine."
     )
 
 

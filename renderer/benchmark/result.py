@@ -14,16 +14,23 @@ from typing import Any, Final
 
 from renderer.manifest import write_atomically
 
-PARTS: Final = ("lods", "effects", "samples", "cubes", "crowd", "work", "startup", "memory")
+PARTS: Final = (
+    *("lods", "effects", "samples", "cubes", "crowd", "aims"),
+    *("work", "startup", "memory"),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cost:
     """A time in ms: of a whole frame (``lod``), or of an effect at a level (``effect``, ``level``).
 
-    An effect's time is that of a frame with it minus that of the same frame without it. ``base``
-    says of which frame: the LoD that the other effects have. ``n`` rounds, ``load`` the machine's
-    load average (1 min) when they ended.
+    By the clock that ``About`` names: on software GL wall time until a frame is there, on a GPU its
+    own time for a frame that was handed over before. An effect's time is that of a frame with it
+    minus that of the same frame without it. ``base`` says of which frame: the LoD that the other
+    effects have. ``n`` rounds, ``load`` the machine's load average (1 min) when they ended.
+
+    Of whole frames also what they ask of the processor, medians per frame (``processor``), and on a
+    GPU how they follow one another: a rate is 1000 / ``row_ms``.
     """
 
     part: str
@@ -47,6 +54,12 @@ class Cost:
     cube: str | None = None  # static or dynamic; of whole frames a clip's cube_size
     cube_px: int | None = None
     crowd: int | None = None
+    processor_ms: float | None = None  # the submitting thread's; on software GL without drawing
+    draw_calls: int | None = None
+    reads: int | None = None  # pictures and buffers read back, on software GL the frame's own too
+    row_ms: float | None = None  # on a GPU: wall time of many frames in a row, each
+    wait_ms: float | None = None  # of it in reading back
+    gaps: int | None = None  # on a GPU: rounds whose time counts its waiting for commands
 
 
 @dataclass(frozen=True, kw_only=True)

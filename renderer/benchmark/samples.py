@@ -9,8 +9,9 @@ from __future__ import annotations
 from functools import partial
 from typing import Final
 
-from renderer.benchmark.clock import WARM_UP, difference
+from renderer.benchmark.clock import WARM_UP
 from renderer.benchmark.result import Bench
+from renderer.benchmark.spread import difference
 from renderer.benchmark.stand import Stand, Step
 from renderer.certification.layers import STEPS, LayerError, integrator_errors
 from renderer.detail import Detail
@@ -38,7 +39,7 @@ def _measure(
     off = stand.spec(ultra.with_levels(subsurface="off"))
     sums = [stand.spec(ultra, subsurface_samples=count) for count in samples]
     pieces = [stand.spec(ultra.with_levels(subsurface=level)) for level in ours]
-    without, *times = stand.time([stand.frames(spec) for spec in (off, *sums, *pieces)])
+    without, *shots = stand.time([stand.frames(spec) for spec in (off, *sums, *pieces)])
     nodes = [int(spec.left.setting("subsurface", "nodes")) for spec in pieces]
     errors = integrator_errors(
         stand.studio.gl,
@@ -49,12 +50,12 @@ def _measure(
         steps=STEPS,
     )
     counts = [*samples, *[0] * len(ours)]
-    for spec, ms, error, count in zip((*sums, *pieces), times, errors, counts, strict=True):
+    for spec, own, error, count in zip((*sums, *pieces), shots, errors, counts, strict=True):
         bench.rows.append(
             stand.row(
                 PART,
                 spec,
-                difference(ms, without),
+                difference(own, without),
                 effect="subsurface",
                 level=spec.left.subsurface,
                 base="ultra",

@@ -9,8 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from renderer.benchmark.clock import Spread, Timed, clock_of, interleaved, timer_of
+from renderer.benchmark.clock import QUERY, WALL, Shot, Timed, clock_of, interleaved, timer_of
+from renderer.benchmark.processor import watched
 from renderer.benchmark.result import About, Bench, Cost
+from renderer.benchmark.spread import Spread, asked_of, spread_of
 from renderer.camera import iris_px
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
@@ -40,7 +42,6 @@ class Stand:
         self.size = size
         self.rounds = rounds
         self.clock = clock_of(self.studio.gl_renderer)
-        self._timer = timer_of(self.studio.gl, self.clock)
         self._kept: FrameRenderer | None = None
 
     def spec(
@@ -68,9 +69,15 @@ class Stand:
             self._kept = self.frames(spec)
         return self._kept
 
-    def time(self, variants: Sequence[Timed]) -> list[list[float]]:
-        """Return milliseconds per variant and round, taken in turn."""
-        return interleaved(variants, rounds=self.rounds, timer=self._timer)
+    def time(self, variants: Sequence[Timed], *, are_whole: bool = False) -> list[list[Shot]]:
+        """Return a shot per variant and round, taken in turn; whole frames have their rows, too."""
+        with watched(is_software=self.clock == WALL) as watch:
+            timer = timer_of(self.studio.gl, self.clock, watch=watch, has_rows=are_whole)
+            return interleaved(variants, rounds=self.rounds, timer=timer)
+
+    def frame_row(self, part: str, spec: ClipSpec, shots: Sequence[Shot], **says: Any) -> Cost:
+        """Return a row of whole frames: their time and what they asked of the processor."""
+        return self.row(part, spec, spread_of(shots), **asked_of(shots), **says)
 
     def row(self, part: str, spec: ClipSpec, spread: Spread, **says: Any) -> Cost:
         """Return one row of ``bench.json``: of a clip of one eye, unless it ``says`` otherwise."""
@@ -87,6 +94,7 @@ class Stand:
             ms_mad=spread.mad,
             n=spread.n,
             load=load(),
+            gaps=spread.gaps if self.clock == QUERY else None,
             **{**seen, **says},
         )
 

@@ -1,50 +1,23 @@
-"""The benchmark as tables, one or two for each part. Pure."""
+"""The benchmark as tables, one or more for each part. Pure."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Final
+from collections.abc import Callable
 
+from renderer.benchmark.cells import NOTHING, Table, counts, ms
 from renderer.benchmark.effects import is_none
-from renderer.benchmark.result import Bench, Cost, Work
+from renderer.benchmark.frame_tables import aim_tables, clip_cube_tables, crowd_tables, lod_tables
+from renderer.benchmark.result import Bench, Work
 from renderer.detail import EFFECTS, STANDARD_LODS
-
-NOTHING: Final = "-"  # not measured
-
-
-@dataclass(frozen=True)
-class Table:
-    """A title, a note that says how to read it, a head and rows of cells; the first is a name."""
-
-    title: str
-    note: str
-    head: tuple[str, ...]
-    rows: Sequence[tuple[str, ...]]
 
 
 def tables_of(bench: Bench) -> list[Table]:
     """Return a table for every part that was measured."""
     makers: tuple[Callable[[Bench], list[Table]], ...] = (
-        _lods, _effects, _samples, _cubes, _crowd, _work, _startup, _memory,
+        lod_tables, _effects, _samples, _cubes, clip_cube_tables, crowd_tables, aim_tables, _work,
+        _startup, _memory,
     )  # fmt: skip
     return [table for make in makers for table in make(bench) if table.rows]
-
-
-def _lods(bench: Bench) -> list[Table]:
-    cell = {(row.distance, row.eyes, row.lod): row for row in bench.of_part("lods")}
-    places = list(dict.fromkeys((distance, eyes) for distance, eyes, _ in cell))
-    iris = {(row.distance, row.eyes): row.iris_px for row in cell.values()}
-    rows = [
-        (
-            f"{place[0]}, {_eyes(place[1])}",
-            f"{iris[place]:.0f}",
-            *(_frames(cell.get((*place, lod))) for lod in STANDARD_LODS),
-        )
-        for place in places
-    ]
-    note = "Whole frames: median ms ± MAD over the orbit, and frames/s."
-    return [Table("Frames by LoD", note, ("", "iris px", *STANDARD_LODS), rows)]
 
 
 def _effects(bench: Bench) -> list[Table]:
@@ -55,7 +28,7 @@ def _effects(bench: Bench) -> list[Table]:
             (
                 effect,
                 *(
-                    "none" if is_none(effect, level) else _ms(cell.get((base, effect, level)))
+                    "none" if is_none(effect, level) else ms(cell.get((base, effect, level)))
                     for level in STANDARD_LODS
                 ),
             )
@@ -78,7 +51,7 @@ def _samples(bench: Bench) -> list[Table]:
                 f"left sum, {row.samples} samples" if row.samples else f"ours at {row.level}",
                 str(row.fetches),
                 f"{work.arithmetic:.0f}" if work else NOTHING,
-                _ms(row),
+                ms(row),
                 f"{row.rms_percent:.2f}",
                 f"{row.bias_percent:+.2f}",
             )
@@ -89,39 +62,14 @@ def _samples(bench: Bench) -> list[Table]:
 
 
 def _cubes(bench: Bench) -> list[Table]:
-    found = bench.of_part("cubes")
-    cell = {(row.cube_px, row.cube): row for row in found if row.effect}
+    cell = {(row.cube_px, row.cube): row for row in bench.of_part("cubes") if row.effect}
     sizes = dict.fromkeys(size for size, _ in cell)
     rows = [
-        (f"{size} px", *(_ms(cell.get((size, kind))) for kind in ("static", "dynamic")))
+        (f"{size} px", *(ms(cell.get((size, kind))) for kind in ("static", "dynamic")))
         for size in sizes
     ]
     note = "ms with the reflection minus none, ± MAD; one ultra eye."
-    clips = [(f"{row.cube}, {row.cube_px} px", _ms(row), _fps(row)) for row in found if row.lod]
-    whole = "Whole frames of two ultra eyes: cubes of Table 5.1's size, and of what the size shows."
-    return [
-        Table("Cube maps by size of a face", note, ("", "static", "dynamic"), rows),
-        Table("Cube maps in clips", whole, ("cube_size", "ms", "frames/s"), clips),
-    ]
-
-
-def _crowd(bench: Bench) -> list[Table]:
-    found = bench.of_part("crowd")
-    rows = [
-        (
-            f"{row.crowd} people",
-            row.distance,
-            f"{row.eyes} {row.lod}",
-            _ms(row),
-            _fps(row),
-        )
-        for row in found
-    ]
-    note = (
-        "Whole frames. At a distance: two ultra eyes and so many other people in the scene. Group: "
-        "so many people who face the camera, each eye at the LoD that its size asks for."
-    )
-    return [Table("Crowd", note, ("", "distance", "eyes", "ms", "frames/s"), rows)]
+    return [Table("Cube maps by size of a face", note, ("", "static", "dynamic"), rows)]
 
 
 def _work(bench: Bench) -> list[Table]:
@@ -141,7 +89,7 @@ def _work(bench: Bench) -> list[Table]:
         (
             effect,
             *(
-                "none" if is_none(effect, level) else _counts(effects.get((effect, level)))
+                "none" if is_none(effect, level) else counts(effects.get((effect, level)))
                 for level in STANDARD_LODS
             ),
         )
@@ -181,23 +129,3 @@ def _memory(bench: Bench) -> list[Table]:
     ]
     note = "MB of GL's objects, and of the process with everything in it; two eyes at macroscopic."
     return [Table("Memory", note, ("", *lods), rows)]
-
-
-def _eyes(number: int) -> str:
-    return "one eye" if number == 1 else f"{number} eyes"
-
-
-def _frames(row: Cost | None) -> str:
-    return f"{_ms(row)} ({_fps(row)}/s)" if row else NOTHING
-
-
-def _fps(row: Cost) -> str:
-    return f"{1000 / row.ms_median:.3g}" if row.ms_median > 0 else NOTHING
-
-
-def _ms(row: Cost | None) -> str:
-    return f"{row.ms_median:.1f} ± {row.ms_mad:.1f}" if row else NOTHING
-
-
-def _counts(work: Work | None) -> str:
-    return f"{work.fetches:+.1f} {work.arithmetic:+.0f}" if work else NOTHING

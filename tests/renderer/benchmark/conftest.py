@@ -51,7 +51,8 @@ def known() -> Bench:
     places = (("macroscopic", 350.0), ("far", 12.0))
     lods = [
         cost("lods", lod=lod, distance=distance, iris_px=iris_px, eyes=eyes,
-             ms_median=50.0 * (step + 1) * eyes * (iris_px / 350) ** 0.3)
+             ms_median=50.0 * (step + 1) * eyes * (iris_px / 350) ** 0.3,
+             processor_ms=5.0 * (step + 1), draw_calls=60 * eyes, reads=2)
         for distance, iris_px in places
         for eyes in (2, 1)
         for step, lod in enumerate(STANDARD_LODS)
@@ -76,7 +77,17 @@ def known() -> Bench:
                                (2048, "static", 8.0), (2048, "dynamic", 90.0))
     ]  # fmt: skip
     cubes += [
-        cost("cubes", lod="ultra", eyes=2, cube=choice, cube_px=size, ms_median=ms)
+        cost(
+            "cubes",
+            lod="ultra",
+            eyes=2,
+            cube=choice,
+            cube_px=size,
+            ms_median=ms,
+            processor_ms=20.0,
+            draw_calls=146,
+            reads=2,
+        )
         for choice, size, ms in (("table", 2048, 400.0), ("auto", 256, 250.0))
     ]
     crowd = [
@@ -88,9 +99,33 @@ def known() -> Bench:
              ms_median=40.0 + people)
         for people in (5, 30)
     ]  # fmt: skip
+    aims = [
+        cost(
+            "aims",
+            lod="ultra",
+            eyes=2,
+            cube="table",
+            cube_px=2048,
+            ms_median=500.0,
+            processor_ms=10.0,
+            draw_calls=102,
+            reads=1,
+        ),
+        cost(
+            "aims",
+            lod="by size",
+            eyes=60,
+            crowd=30,
+            distance="group",
+            ms_median=400.0,
+            processor_ms=6.0,
+            draw_calls=106,
+            reads=1,
+        ),
+    ]
     return Bench(
         about=about,
-        rows=[*lods, *effects, *samples, *cubes, *crowd],
+        rows=[*lods, *effects, *samples, *cubes, *crowd, *aims],
         work=[
             Work(lod="low", triangles=156, pixels=5000, fetches=4.0, arithmetic=157.4),
             Work(effect="subsurface", level="ultra", base="ultra", samples=10, pixels=3000,

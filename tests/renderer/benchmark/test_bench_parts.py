@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from renderer.benchmark import crowd, cubes, lods
-from renderer.benchmark.clock import QUERY, timer_of
+from renderer.benchmark.clock import QUERY
 from renderer.benchmark.effects import is_none, levels_of
 from renderer.benchmark.plan import Progress, guess_s, run_bench, steps_of
 from renderer.benchmark.result import PARTS, About, Bench
@@ -60,6 +60,11 @@ def test_frames_of_each_lod_are_timed(stand: Stand, monkeypatch: pytest.MonkeyPa
     assert [row.lod for row in bench.rows] == ["low", "medium"]
     for row in bench.rows:
         assert (row.part, row.size, row.distance, row.eyes) == ("lods", "96x64", "macroscopic", 1)
+        assert row.processor_ms is not None
+        assert 0.0 < row.processor_ms < row.ms_median
+        assert row.draw_calls is not None
+        assert row.draw_calls > 20
+        assert (row.row_ms, row.wait_ms, row.gaps) == (None, None, None)  # a GPU's alone
         assert row.iris_px == pytest.approx(350 * 64 / 1080, abs=0.01)
         assert row.ms_median > 0
         assert row.n == 2
@@ -82,9 +87,17 @@ def test_timer_queries_run_where_the_wall_clock_is_better(
 ) -> None:
     frames = stand.frames(stand.spec(Detail.uniform("low")))
     monkeypatch.setattr(frames, "render", None)  # reading back is no part of a GPU's time
-    timer = timer_of(stand.studio.gl, QUERY)
-    spent = [timer(frames, azimuth, 0.0) for azimuth in (0.0, 10.0, 20.0)]
-    assert all(0.0 < ms < 4294.0 for ms in spent)  # 2^32 ns: a query that went wrong
+    monkeypatch.setattr("renderer.benchmark.clock.ROW", 2)
+    stand.clock = QUERY
+    (shots,) = stand.time([frames], are_whole=True)
+    assert all(0.0 < shot.ms < 4294.0 for shot in shots)  # 2^32 ns: a query that went wrong
+    row = stand.frame_row("lods", frames.spec, shots, lod="low")
+    assert row.draw_calls is not None
+    assert row.draw_calls > 20
+    assert row.row_ms is not None
+    assert row.wait_ms is not None
+    assert 0.0 <= row.wait_ms < row.row_ms
+    assert row.gaps in range(row.n + 1)
 
 
 def test_a_cube_of_another_size_is_mirrored_and_the_scene_keeps_its_own(
