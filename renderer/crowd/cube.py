@@ -20,6 +20,7 @@ from renderer.crowd.crowd import Crowd
 from renderer.crowd.cube_tiles import TILES, Bools, cover, touched
 from renderer.crowd.stage import GROUND_MM
 from renderer.gl.context import chooses_parts
+from renderer.gl.uniforms import constant
 from renderer.park.cube_faces import face_view
 from renderer.park.cube_target import CubeTarget, Rectangle
 
@@ -28,9 +29,10 @@ Floats = npt.NDArray[np.float64]
 NEAR_MM: Final = 150.0
 FAR_MM: Final = 30000.0
 LEVELS: Final = 5  # a 350-pixel iris reads about every eleventh texel of 2048
-FACE_VIEWS: Final = tuple(face_view(face) for face in range(6))
-_PROJECTION: Final = perspective(90.0, 1.0, NEAR_MM, FAR_MM)
-_CENTRE_MM: Final = np.zeros(3)
+FACE_VIEWS: Final = tuple(constant(face_view(face)) for face in range(6))
+_PROJECTION: Final = constant(perspective(90.0, 1.0, NEAR_MM, FAR_MM))
+_CENTRE_MM: Final = constant(np.zeros(3))
+_SOLID: Final = moderngl.DEPTH_TEST | moderngl.CULL_FACE
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ class CrowdCube:
         self.crowd.skin(sorted({number for draw in draws for number in (*draw.seen, *draw.cast)}))
         self.crowd.light_figures(projection=_PROJECTION, camera_mm=_CENTRE_MM)
         self.crowd.shadows.light(self.crowd.light.sky, projection=_PROJECTION)
+        self.gl.enable_only(moderngl.NOTHING)
         for draw in draws:
             self._draw(draw)
         self._cube.build_levels([(draw.face, part) for draw in draws for part in draw.clear or ()])
@@ -80,9 +83,9 @@ class CrowdCube:
         for viewport in [None] if draw.clear is None else draw.clear:
             target.clear(0.0, 0.0, 0.0, 0.0, depth=1.0, viewport=viewport)
         view = FACE_VIEWS[draw.face]
-        self.gl.enable_only(moderngl.NOTHING)
+        self.gl.disable(_SOLID)
         self.crowd.shadows.draw(draw.cast, view_matrix=view)
-        self.gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        self.gl.enable(_SOLID)
         self.crowd.draw_lit(draw.seen, view_matrix=view)
 
     def _all_draws(self) -> list[_FaceDraw]:
