@@ -1,6 +1,7 @@
 """Names too long for a chart: shortened in its texts, whole in the tables beside it.
 
-Names are anybody's: those of a ratings file may be sentences. Charts find room for ``LONGEST``.
+Names are anybody's: those of a ratings file may be sentences. Charts find room for ``LONGEST``, and
+for more in the names of clips, which they break into lines.
 """
 
 from __future__ import annotations
@@ -16,30 +17,31 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 LONGEST: Final = 24  # the longest name of a LoD in our own studies has 21 letters
+LONGEST_CLIP: Final = 48  # and of a clip 39
 _END: Final = 8  # what tells names apart often stands at their end
 _MARK: Final = "…"
 
 
-def shortened(names: Iterable[str]) -> dict[str, str]:
+def shortened(names: Iterable[str], *, longest: int = LONGEST) -> dict[str, str]:
     """Return what stands in charts for each name that is too long; two never share a short one."""
     whole = sorted(set(names))
-    used, short = {name for name in whole if len(name) <= LONGEST}, {}
+    used, short = {name for name in whole if len(name) <= longest}, {}
     for name in whole:
-        if len(name) <= LONGEST:
+        if len(name) <= longest:
             continue
         plain = " ".join(name.split())
-        found, number = _cut(plain, plain[-_END:]), 1
+        found, number = _cut(plain, plain[-_END:], longest), 1
         while found in used:
             number += 1
-            found = _cut(plain, f" {number}")
+            found = _cut(plain, f" {number}", longest)
         used.add(found)
         short[name] = found
     return short
 
 
-def _cut(name: str, end: str) -> str:
-    """Return a name's beginning and ``end``, ``LONGEST`` letters in all."""
-    return f"{name[: LONGEST - len(end) - 1].rstrip()}{_MARK}{end.lstrip()}"
+def _cut(name: str, end: str, longest: int) -> str:
+    """Return a name's beginning and ``end``, ``longest`` letters in all."""
+    return f"{name[: longest - len(end) - 1].rstrip()}{_MARK}{end.lstrip()}"
 
 
 def shorten(figure: Figure, short: Mapping[str, str]) -> None:

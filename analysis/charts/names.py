@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 from analysis.charts.fonts import Fonts, fonts_for
-from analysis.charts.long_names import LONGEST, shortened
+from analysis.charts.long_names import LONGEST, LONGEST_CLIP, shortened
 from analysis.tables.reading import Tables
 
-_NAMES: Final = ("distance", "lod", "other_lod", "left_lod", "right_lod", "clip", "participant")
+_NAMES: Final = ("distance", "lod", "other_lod", "left_lod", "right_lod", "participant")
+_CLIPS: Final = ("clip",)
 
 
-def names_in(tables: Tables) -> set[str]:
+def names_in(tables: Tables, columns: Sequence[str] = (*_NAMES, *_CLIPS)) -> set[str]:
     """Return every name that a chart may show."""
     return {
         str(name)
         for table in (tables.ratings, tables.comparisons)
-        for column in _NAMES
+        for column in columns
         if column in table
         for name in table[column].dropna().unique()
     }
@@ -24,7 +26,8 @@ def names_in(tables: Tables) -> set[str]:
 
 def short_names(tables: Tables) -> dict[str, str]:
     """Return what charts write for names that are too long for them."""
-    return shortened(names_in(tables))
+    clips = shortened(names_in(tables, _CLIPS), longest=LONGEST_CLIP)
+    return clips | shortened(names_in(tables, _NAMES))
 
 
 def fonts_of(tables: Tables) -> Fonts:
@@ -36,5 +39,8 @@ def chart_notes(tables: Tables) -> list[str]:
     """Say in sentences what a reader of the charts must know about their names."""
     told = [fonts_of(tables).sentence()]
     if short_names(tables):
-        told.append(f"Charts shorten names of more than {LONGEST} letters; tables have them whole.")
+        told.append(
+            f"Charts shorten names of more than {LONGEST} letters (of clips, {LONGEST_CLIP}); "
+            "tables have them whole."
+        )
     return [sentence for sentence in told if sentence]

@@ -50,6 +50,15 @@ class Margins:
                 found, most = getattr(self, name), "" if high == np.inf else f" and below {high:g}"
                 raise ValueError(f"{key}: found {found:g}; accepted: above {low:g}{most}")
 
+    def check(self, scale: tuple[int, int]) -> None:
+        """Raise ValueError if no rating could be as far below another as the margin of realism."""
+        low, high = scale
+        if self.realism_points >= high - low:
+            raise ValueError(
+                f"realism_margin: found {self.realism_points:g}; accepted: above 0 and below "
+                f"{high - low}, as ratings go from {low} to {high}"
+            )
+
     def origin(self, name: str) -> str:
         """Return where a value comes from: ``DECLARED`` or ``AT_ANALYSIS``."""
         return DECLARED if name in self.declared else AT_ANALYSIS

@@ -54,8 +54,10 @@ def analyse(
     ``bench`` is the path of ``bench.json``, which adds what each LoD costs; ``margins`` are what
     counts as no loss (without, what the study declared); ``codes`` is a CSV file of remarks coded
     by hand; with two ``processes`` others draw while this one works out the rest. Raises
-    TableError for its faults, before anything is written.
+    TableError for its faults and ValueError for margins wider than the scale, before anything is
+    written.
     """
+    (margins or tables.margins).check(tables.scale)
     costs = read_bench(bench) if bench is not None else None
     manual = read_codes(codes) if codes is not None else None
     folder = Path(out)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -18,6 +18,7 @@ from analysis.descriptive.quality import quality_statements
 from analysis.report.answer import Finding
 from analysis.report.limits import limits
 from analysis.report.page import REPORT, Parts
+from analysis.words.wording import place
 
 BY_SIZE: Final = "by size"  # the answer along the iris's size stands beside those by distance
 
@@ -58,10 +59,11 @@ def summarise(
     """Return what was found; which files were written is added when they are."""
     tables, own, costs = material.tables, material.inference, material.costs
     rated = answered(tables.ratings)
+    lods = set(tables.ratings["lod"])
     return Summary(
-        findings=tuple(found),
+        findings=tuple(replace(one, distance=place(one.distance, lods)) for one in found),
         verdicts=(
-            *((decision.distance, answer(decision, costs)) for decision in own.decisions),
+            *((place(one.distance, lods), answer(one, costs)) for one in own.decisions),
             *effect_answers(own.effects, costs),
             *((BY_SIZE, policy_answer(policy, costs)) for policy in [own.policy] if policy),
         ),

@@ -17,6 +17,7 @@ from analysis.tables.column import Column
 
 _FIRST_ROW: Final = 2
 _SHOWN_FAULTS: Final = 50
+_ROWS_TOLD: Final = 3  # of rows with the same fault; of more the first alone
 _DECIMAL_COMMA: Final = re.compile(r"^([+-]?\d+),(\d+)$")
 _MOST_WHOLE: Final = 2.0**53  # beyond it two whole numbers may be read as one
 _TRUTH: Final = {"true": True, "false": False, "1": True, "0": False}
@@ -72,13 +73,22 @@ def parse_table(
         read = text.str.replace(_DECIMAL_COMMA, r"\1.\2", regex=True) if is_number else text
         parsed[column.name], is_wrong = _parse(read, column)
         if column.name in frame:
-            faults += [
-                (int(row), f'{column.name}: found "{text[row]}"; accepted {_accepted(column)}')
-                for row in frame.index[is_wrong]
-            ]
+            faults += _cell_faults(text[is_wrong], column)
     ordered = sorted(faults, key=lambda fault: fault[0])
     table = pd.DataFrame(parsed, index=frame.index)
     return table, [f"{source}: row {row + _FIRST_ROW}, {fault}" for row, fault in ordered]
+
+
+def _cell_faults(wrong: pd.Series, column: Column) -> list[tuple[int, str]]:
+    """Return row and words of each fault; one that many rows have is told once, at the first."""
+    faults: list[tuple[int, str]] = []
+    for found, own in wrong.groupby(wrong, sort=False):
+        fault = f'{column.name}: found "{found}"; accepted {_accepted(column)}'
+        rows = [int(row) for row in own.index]
+        if len(rows) > _ROWS_TOLD:
+            fault, rows = f"{fault} (and so in {len(rows) - 1} more rows)", rows[:1]
+        faults += [(row, fault) for row in rows]
+    return faults
 
 
 def _as_text(series: pd.Series) -> pd.Series:

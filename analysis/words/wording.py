@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 
 def number(value: float, *, digits: int = 2) -> str:
@@ -55,3 +55,8 @@ def counted(count: int, one: str, many: str) -> str:
 def people(count: int) -> str:
     """Write a number of people (or answers) as in "n = 10", kept on one line."""
     return f"n\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}{count}"
+
+
+def place(distance: str, lods: Collection[str]) -> str:
+    """Name a distance where LoDs are named, too: "medium distance" if "medium" is also a LoD."""
+    return f"{distance} distance" if distance in lods else distance

@@ -131,5 +131,7 @@ def test_missing_characters_warn_nobody_and_are_told(
         draw_charts(Material(tables))
     told = chart_notes(tables)
     assert told[0].startswith(f"Charts show boxes for {FOX}, ")
-    assert told[1] == "Charts shorten names of more than 24 letters; tables have them whole."
+    assert told[1] == (
+        "Charts shorten names of more than 24 letters (of clips, 48); tables have them whole."
+    )
     assert chart_notes(thesis_tables) == []

@@ -208,6 +208,13 @@ def test_bench_faults_stop_before_anything_is_written(
     assert not (tmp_path / "out").exists()
 
 
+def test_a_margin_wider_than_the_scale_is_refused(thesis_tables: Tables, tmp_path: Path) -> None:
+    wide = analysis.Margins(realism_points=9.0)
+    with pytest.raises(ValueError, match="found 9; accepted: above 0 and below 4, as ratings go"):
+        analysis.analyse(thesis_tables, tmp_path / "out", margins=wide)
+    assert not (tmp_path / "out").exists()
+
+
 def test_importing_the_package_loads_no_plotting_or_tables() -> None:
     code = (
         "import sys, analysis; analysis.COLUMNS; "

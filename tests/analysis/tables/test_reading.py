@@ -207,7 +207,7 @@ def test_simulated_may_stand_with_the_participants_alone() -> None:
 
 
 def test_a_long_list_of_faults_is_cut_in_the_text_but_kept() -> None:
-    frame = pd.DataFrame({"participant": ["A"] * 80, "lod": "low", "rating": 8})
+    frame = pd.DataFrame({"participant": ["A"] * 80, "lod": "low", "rating": range(8, 88)})
     with pytest.raises(TableError, match="and 30 more faults") as caught:
         tables_from({"ratings": frame})
     assert len(caught.value.faults) == 80
@@ -221,4 +221,14 @@ def test_typed_frames_give_the_same_as_text(tmp_path: Path) -> None:
     typed.to_csv(path, index=False)
     pd.testing.assert_frame_equal(
         tables_from({"ratings": typed}).ratings, read_source(path).ratings
+    )
+
+
+def test_a_fault_of_many_rows_is_told_once() -> None:
+    frame = pd.DataFrame({"participant": ["A"] * 9, "lod": "low", "rating": [1, 2, *[0] * 7]})
+    with pytest.raises(TableError) as caught:
+        tables_from({"ratings": frame})
+    assert str(caught.value) == (
+        'ratings.csv: row 4, rating: found "0"; accepted a whole number from 1 to 5 or empty '
+        "(and so in 6 more rows)"
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from analysis.words.wording import number, percent
+from analysis.words.wording import number, percent, place
 
 
 @pytest.mark.parametrize(
@@ -18,3 +18,8 @@ def test_a_number_has_a_true_minus_and_zero_none(value: float, text: str) -> Non
 @pytest.mark.parametrize(("share", "text"), [(-0.05, "−5"), (-0.004, "0"), (0.9, "90")])
 def test_a_share_has_a_true_minus_and_zero_none(share: float, text: str) -> None:
     assert percent(share) == f"{text}\N{NO-BREAK SPACE}%"
+
+
+def test_a_distance_with_the_name_of_a_lod_says_what_it_is() -> None:
+    assert place("medium", {"low", "medium"}) == "medium distance"
+    assert place("far", {"low", "medium"}) == "far"
