@@ -28,6 +28,8 @@ LEVELS: Final = ("off", "low", "medium", "high", "ultra")
 STANDARD_LODS: Final = ("low", "medium", "high", "ultra")
 DISTANCES: Final = ("macroscopic", "near", "medium", "far")
 EYES: Final = ("left", "right")
+WIDEST_PX: Final = 7680
+"""The widest picture: an iris of more pixels is a slip of the pen."""
 NOTICED: Final = ("yes", "unsure", "no")
 SCALE: Final = (1, 5)
 """Lowest and highest rating of the thesis's scale (Appendix B, question 4)."""
@@ -51,7 +53,14 @@ _TRIAL: Final = (
         "text",
         "viewing distance, from closest to farthest: " + ", ".join(DISTANCES),
     ),
-    Column("iris_px", "number", "diameter of the iris in the clip's pixels", "px", low=0),
+    Column(
+        "iris_px",
+        "number",
+        "diameter of the iris in the clip's pixels",
+        "px",
+        low=0,
+        high=WIDEST_PX,
+    ),
     Column("iris_deg", "number", "angle of the iris at the participant's eye", "degree", low=0),
     Column("iris_deg_se", "number", "standard error of iris_deg", "degree", low=0),
     Column("shown_scale", "number", "device pixels shown per pixel of the clip", "ratio", low=0),

@@ -17,6 +17,8 @@ from typing import Any, Final
 from renderer.detail import Detail
 
 SWITCHINGS: Final = ("fixed", "blended", "instant")  # what an eye's LoD does as its size changes
+WIDEST_PX: Final = 7680.0
+"""No iris is wider than the widest picture that a clip may have."""
 
 
 @dataclass(frozen=True)
@@ -61,10 +63,11 @@ class LodPolicy:
             )
         last = 0.0
         for number, limit in enumerate(limits[:-1]):
-            if limit is None or not last < limit < math.inf:
+            if limit is None or not last < limit <= WIDEST_PX:
                 yield (
                     f"steps.{number}.up_to_iris_px: {limit}; the LoDs run from coarse to fine, and "
-                    f"each needs a size in pixels above {last:g}"
+                    f"each needs a size in pixels above {last:g}, to {WIDEST_PX:g}, the widest "
+                    "picture"
                 )
             last = limit or last
         for name in ("hysteresis", "band"):

@@ -85,14 +85,17 @@ def _print_wrapped(lines: Iterable[str]) -> None:
 
 def _margins(definition: StudyDefinition, options: argparse.Namespace) -> Margins:
     from analysis import declared_margins
+    from analysis.tables.columns import SCALE
 
     rule = definition.decision
     declared = declared_margins({"decision": rule.model_dump(mode="json")} if rule else {})
-    return declared.changed(
+    margins = declared.changed(
         realism_points=options.realism_margin,
         noticed_share=options.noticed_margin,
         confidence=options.confidence,
     )
+    margins.check(SCALE)
+    return margins
 
 
 def _truth(name: str, plan: Plan, margins: Margins) -> Assumed:

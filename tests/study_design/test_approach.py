@@ -150,6 +150,10 @@ def test_a_policy_is_read_beside_the_study_and_kept_in_it(
     (tmp_path / "mine.json").unlink()
     with pytest.raises(DefinitionError, match=r"lod_policy: .*mine\.json: No such file"):
         read_definition(tmp_path / "mine.toml")
+    wide = [{"lod": "medium", "up_to_iris_px": 9000}, {"lod": "high", "up_to_iris_px": None}]
+    approaching["lod_policy"] = policy | {"steps": wide}
+    told = "steps.0.up_to_iris_px: 9000.0; the LoDs run from coarse to fine, and each needs a size "
+    assert f"{told}in pixels above 0, to 7680, the widest picture" in faults(approaching)[0]
     approaching["lod_policy"] = policy | {"steps": []}
     assert faults(approaching)[0].startswith("lod_policy: not a LoD policy of schema 1: steps: em")
 

@@ -224,6 +224,12 @@ def test_typed_frames_give_the_same_as_text(tmp_path: Path) -> None:
     )
 
 
+def test_an_iris_wider_than_any_picture_is_refused() -> None:
+    frame = pd.DataFrame({"participant": ["A"], "lod": "low", "rating": 2, "iris_px": [1e9]})
+    with pytest.raises(TableError, match=r"iris_px: .*; accepted a number from 0 to 7680 or empty"):
+        tables_from({"ratings": frame})
+
+
 def test_a_fault_of_many_rows_is_told_once() -> None:
     frame = pd.DataFrame({"participant": ["A"] * 9, "lod": "low", "rating": [1, 2, *[0] * 7]})
     with pytest.raises(TableError) as caught:

@@ -6,6 +6,7 @@ import pytest
 
 from analysis.tables import codebook, columns
 from renderer import clip, detail
+from renderer.lod import choice
 
 
 def test_words_are_those_of_the_renderer() -> None:
@@ -13,6 +14,7 @@ def test_words_are_those_of_the_renderer() -> None:
     assert columns.LEVELS == detail.LEVELS
     assert columns.STANDARD_LODS == detail.STANDARD_LODS
     assert columns.DISTANCES == clip.DISTANCES
+    assert choice.WIDEST_PX == columns.WIDEST_PX == clip._RANGES["width"][1]
 
 
 def test_ratings_have_the_contracts_columns_in_its_order() -> None:
