@@ -21,7 +21,8 @@ ASKED_OF: Final = {
     ),
     True: (
         "The submitting thread's own ms per frame, driver included, draw calls, and what bounds "
-        "the rate in a row: whichever is longer, this or the GPU's ms; or waiting for read-backs."
+        "the rate in a row: the longer of this and the GPU's ms; waiting for read-backs; neither, "
+        "where a row takes a quarter longer than both (other threads of the driver, other work)."
     ),
 }
 

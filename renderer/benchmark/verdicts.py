@@ -7,8 +7,9 @@ from typing import Final
 
 from renderer.benchmark.result import Bench, Cost
 
-GPU, PROCESSOR, BOTH, READING = "GPU", "processor", "both", "read-backs"
+GPU, PROCESSOR, BOTH, READING, NEITHER = "GPU", "processor", "both", "read-backs", "neither"
 ALIKE: Final = 1.1  # two times that differ by less bound a rate together
+APART: Final = 1.25  # a row that takes so much longer than either is slow for another reason
 SIZE: Final = (1920, 1080)  # of every aim
 
 
@@ -55,12 +56,15 @@ def bound_by(row: Cost) -> str:
     """Say what a GPU's rate in a row is bound by: the longer of its time and the processor's.
 
     Where more than a tenth of a frame is waiting for what it reads back, the two do not overlap.
+    Where a row takes much longer than either, other threads of the driver or other work bound it.
     Empty for a row that tells no rate in a row.
     """
     if row.row_ms is None or row.processor_ms is None:
         return ""
     if (row.wait_ms or 0.0) > (ALIKE - 1.0) * row.row_ms:
         return READING
+    if row.row_ms > APART * max(row.ms_median, row.processor_ms):
+        return NEITHER
     if row.ms_median > ALIKE * row.processor_ms:
         return GPU
     return PROCESSOR if row.processor_ms > ALIKE * row.ms_median else BOTH

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
 HELP = "measure what each LoD and effect costs"
 DESCRIPTION = (
-    "Time on this machine: frames of each LoD with two eyes and one, each effect at each level, "
-    "subsurface by samples, cube maps by size, crowds; count triangles, texture fetches and "
+    "Time on this machine: frames of each LoD with two eyes and one and what they ask of the "
+    "processor, each effect at each level, subsurface by samples, cube maps by size, crowds, and "
+    "whether a GPU has the rates that were aimed at; count triangles, texture fetches and "
     "arithmetic per pixel, set-up stages and memory. Prints tables, writes them for ocularist "
     "analyse --bench, and draws a chart. About 15 minutes on 2 cores without a GPU, most of them "
     "for pictures of 1920x1080; leave the machine alone meanwhile. What is measured and how: "

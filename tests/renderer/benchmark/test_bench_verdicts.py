@@ -21,6 +21,7 @@ def whole(**says: Any) -> Cost:
 @pytest.mark.parametrize(
     ("gpu_ms", "processor_ms", "wait_ms", "bound"),
     [
+        (6.0, 3.0, 0.0, "neither"),
         (8.0, 3.0, 0.0, "GPU"),
         (3.0, 8.0, 0.0, "processor"),
         (8.0, 7.6, 0.0, "both"),
