@@ -6,6 +6,7 @@ the viewer; the origin lies midway between the centres of the two globes.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass, replace
 from typing import Final, TypedDict
@@ -180,15 +181,18 @@ def look_at(position: npt.NDArray[np.float64], target: npt.NDArray[np.float64]) 
     return matrix.astype(np.float32)
 
 
+@functools.lru_cache(maxsize=64)
 def perspective(fov_deg: float, aspect: float, near_mm: float, far_mm: float) -> Matrix:
-    """Return OpenGL's perspective matrix for a vertical field of view in degrees."""
+    """Return OpenGL's perspective matrix, read-only, for a vertical field of view in degrees."""
     scale = 1 / math.tan(math.radians(fov_deg) / 2)
     matrix = np.zeros((4, 4))
     matrix[0, 0], matrix[1, 1] = scale / aspect, scale
     matrix[2, 2] = (far_mm + near_mm) / (near_mm - far_mm)
     matrix[2, 3] = 2 * far_mm * near_mm / (near_mm - far_mm)
     matrix[3, 2] = -1
-    return matrix.astype(np.float32)
+    found = matrix.astype(np.float32)
+    found.flags.writeable = False
+    return found
 
 
 def iris_px(

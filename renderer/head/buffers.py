@@ -70,6 +70,10 @@ class CellMesh:
         """Replace the baked light: rows (n, 7) are what LIT names, for the same n vertices."""
         self._light.write(rows[self._used].astype(np.float32).tobytes())
 
+    def has_kind(self, kind: int) -> bool:
+        """Whether it has triangles of a kind."""
+        return any(number == kind for number, _ in self._cells)
+
     def draw(
         self,
         program: Program,

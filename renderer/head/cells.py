@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
+from renderer.gl.index_ranges import adjoined
 
 CELL_MM: Final = 12.0
 
@@ -31,7 +32,7 @@ class Cells:
     @cached_property
     def whole(self) -> list[tuple[int, int]]:
         """The runs (first, count) of all cells: one, as ``sort_into_cells`` leaves them."""
-        return merged(self.first, self.count)
+        return adjoined(zip(self.first.tolist(), self.count.tolist(), strict=True))
 
     def visible(
         self, clip: npt.ArrayLike, camera_mm: Floats | None = None
@@ -48,18 +49,7 @@ class Cells:
             distance = np.linalg.norm(to_camera, axis=1)
             slack = self.spread + self.radius_mm / np.maximum(distance, self.radius_mm)
             inside &= (to_camera * self.facing).sum(axis=1) > -slack * distance
-        return merged(self.first[inside], self.count[inside])
-
-
-def merged(firsts: Indices, counts: Indices) -> list[tuple[int, int]]:
-    """Return runs (first, count) in their order with neighbours as one."""
-    runs: list[tuple[int, int]] = []
-    for first, count in zip(firsts.tolist(), counts.tolist(), strict=True):
-        if runs and sum(runs[-1]) == first:
-            runs[-1] = (runs[-1][0], runs[-1][1] + count)
-        else:
-            runs.append((first, count))
-    return runs
+        return adjoined(zip(self.first[inside].tolist(), self.count[inside].tolist(), strict=True))
 
 
 def frustum_distance(clip: Floats, points_mm: Floats) -> Floats:

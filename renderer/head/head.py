@@ -12,7 +12,6 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.body.makehuman import Floats
 from renderer.camera import Matrix, eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.eye.lids import LidRims
@@ -28,9 +27,9 @@ from renderer.head.growing import grow_all_hair
 from renderer.head.lid_pose import lid_poses
 from renderer.head.lid_rims import lid_rims
 from renderer.head.light import light_strands, light_surfaces, open_sky
-from renderer.head.skin_maps import SkinMaps
+from renderer.head.skin_drawing import SkinDrawing
 from renderer.head.strands import blending, strand_programs
-from renderer.head.surfaces import SKIN_KINDS, cap_surface, cloth_surface, skin_surfaces
+from renderer.head.surfaces import cap_surface, cloth_surface, skin_surfaces
 from renderer.head.tears import TearLine
 from renderer.light import Light
 
@@ -52,13 +51,9 @@ class Head:
             "mark": build_program(gl, "depth.vert", fragment="mark.frag"),
             "tears": build_program(gl, "tears.vert", fragment="tears.frag"),
         }
-        self._skin_programs = [
-            build_program(gl, "skin.vert", fragment="skin.frag", constants=constants)
-            for constants in SKIN_KINDS
-        ]
+        self._skin_drawing = SkinDrawing(gl)
         self._strand_programs = strand_programs(gl)
         self._fornix = Fornix(gl)
-        self._skin_maps = SkinMaps(gl, face_mesh())
         self._knit = TilePyramid(gl, knit_tile())
         self._face = face_mesh(poses)
         skin = skin_surfaces(gl, self._face)
@@ -106,15 +101,14 @@ class Head:
             "u_view_matrix": view_matrix,
             "u_projection": projection,
             "u_camera_mm": camera_mm,
-            "u_mark": 0.0,
             **light.uniforms(),
         }
         clip = projection @ view_matrix
-        self._draw_skin(self._skin(distance), view, clip, camera_mm=camera)
-        self._draw_skin([self._mesh("cap")], view | {"u_mark": HAIR}, clip, camera_mm=camera)
+        marked = [*((0.0, mesh) for mesh in self._skin(distance)), (HAIR, self._mesh("cap"))]
+        self._skin_drawing.draw(marked, view, clip, camera_mm=camera, pixels_per_mm=density)
         self._fornix.draw(clip, light.sky)
         fabric = self._programs["fabric"]
-        fabric.set(**view | {"u_mark": CLOTH}, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
+        fabric.set(**view, u_mark=CLOTH, u_knit=self._knit.at(KNIT_PX_PER_MM / density))
         self.gl.disable(moderngl.CULL_FACE)  # the roll neck shows its inside
         self._mesh("cloth").draw(fabric, clip)
 
@@ -160,19 +154,11 @@ class Head:
         camera = np.asarray(camera_mm, dtype=float)
         with blending(self.gl):
             # Conjunctiva fades into the sclera beneath; its solid part stands there already.
-            self._draw_skin(self._veils, view, clip, camera_mm=camera)
+            veils = [(0.0, mesh) for mesh in self._veils]
+            density = pixel_per_mm / float(np.linalg.norm(camera))
+            self._skin_drawing.draw(veils, view, clip, camera_mm=camera, pixels_per_mm=density)
             for mesh, _ in self._hair:
                 mesh.draw(self._strand_programs[mesh.kind], clip, camera_mm=camera)
-
-    def _draw_skin(
-        self, meshes: list[CellMesh], view: dict[str, Any], clip: Matrix, *, camera_mm: Floats
-    ) -> None:
-        """Draw meshes of skin kind by kind: each kind's program puts textures where it wants."""
-        pixels_per_mm = self._pixel_per_mm(view["u_projection"]) / float(np.linalg.norm(camera_mm))
-        for kind, program in enumerate(self._skin_programs):
-            program.set(**view, **self._skin_maps.uniforms(pixels_per_mm))
-            for mesh in meshes:
-                mesh.draw(program, clip, camera_mm=camera_mm, kind=kind)
 
     def draw_tears(
         self,
