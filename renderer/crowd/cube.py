@@ -71,7 +71,7 @@ class CrowdCube:
         self.crowd.pose(time_s)
         draws = self._chosen_draws() if self._chooses else self._all_draws()
         self.crowd.skin(sorted({number for draw in draws for number in (*draw.seen, *draw.cast)}))
-        self.crowd.light_figures(projection=_PROJECTION, camera_mm=_CENTRE_MM)
+        self.crowd.meshes.light(self.crowd.light, projection=_PROJECTION, camera_mm=_CENTRE_MM)
         self.crowd.shadows.light(self.crowd.light.sky, projection=_PROJECTION)
         self.gl.enable_only(moderngl.NOTHING)
         for draw in draws:
@@ -86,7 +86,7 @@ class CrowdCube:
         self.gl.disable(_SOLID)
         self.crowd.shadows.draw(draw.cast, view_matrix=view)
         self.gl.enable(_SOLID)
-        self.crowd.draw_lit(draw.seen, view_matrix=view)
+        self.crowd.meshes.draw(draw.seen, view_matrix=view)
 
     def _all_draws(self) -> list[_FaceDraw]:
         everybody = list(range(len(self.crowd.figures)))
@@ -94,15 +94,15 @@ class CrowdCube:
 
     def _chosen_draws(self) -> list[_FaceDraw]:
         """Return what to draw of each face that people or shadows touch, or did."""
-        centres, reaches = zip(*self.crowd.bounds_mm(), strict=True)
-        points, reach_mm = np.concatenate(centres), np.concatenate(reaches)
-        starts = np.cumsum([0, *map(len, [*reaches, *reaches])])[:-1]
+        bounds = self.crowd.bounds_mm()
+        points, reach_mm, firsts = bounds.centres_mm, bounds.reach_mm, bounds.firsts
         found = touched(
             np.concatenate([points, self._on_ground(points)]),
             np.concatenate([reach_mm, reach_mm]),
             near_mm=NEAR_MM,
         )
-        who = np.logical_or.reduceat(found.spheres, starts, axis=1).reshape(6, 2, len(reaches))
+        starts = np.concatenate([firsts, firsts + len(points)])
+        who = np.logical_or.reduceat(found.spheres, starts, axis=1).reshape(6, 2, len(firsts))
         stale, self._drawn = self._drawn, found.tiles
         changed = stale | self._drawn
         draws = []

@@ -59,9 +59,3 @@ class Figure:
                 radii.append(self.scale * reach)
                 bones.append(bone)
         return np.array(centres), np.array(radii), np.array(bones)
-
-    def carry_spheres(self, transforms: Floats) -> Floats:
-        """Return the spheres' centres (k, 3) in a pose."""
-        centres, _, bones = self.spheres
-        turned = np.einsum("kij,kj->ki", transforms[bones, :3, :3], centres)
-        return np.asarray(turned + transforms[bones, :3, 3])

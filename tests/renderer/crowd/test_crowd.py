@@ -81,7 +81,13 @@ def test_the_gpu_skins_as_numpy_does(crowd) -> None:
 
 def test_spheres_hold_the_posed_mesh(crowd) -> None:
     posed = crowd.vertices(2.2)[:, :3]
-    for figure, (centres, radii) in zip(crowd.figures, crowd.bounds_mm(), strict=True):
+    bounds = crowd.bounds_mm()
+    of_each = zip(
+        np.split(bounds.centres_mm, bounds.firsts[1:]),
+        np.split(bounds.reach_mm, bounds.firsts[1:]),
+        strict=True,
+    )
+    for figure, (centres, radii) in zip(crowd.figures, of_each, strict=True):
         mesh = posed[figure.first_vertex : figure.first_vertex + len(figure.body.positions_mm)]
         beyond = np.linalg.norm(mesh[:, None] - centres[None], axis=2) - radii
         assert beyond.min(axis=1).max() <= 0.0
@@ -127,7 +133,7 @@ def test_a_crowd_of_none_draws_nothing(gl) -> None:
     nobody = ClipSpec(left=Detail.uniform("low"), right=Detail.uniform("low"), crowd=0)
     empty = Crowd(gl, nobody, flat_light(gl))
     assert not draw(gl, empty, 0.0, 1.0).any()
-    assert empty.bounds_mm() == []
+    assert empty.bounds_mm().centres_mm.shape == (0, 3)
 
 
 def test_faces_turned_from_the_sun_get_none_of_it() -> None:

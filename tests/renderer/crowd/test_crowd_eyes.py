@@ -12,6 +12,7 @@ from renderer.camera import LIMBUS_Z_MM, iris_px, look_at, perspective, views
 from renderer.clip import ClipSpec
 from renderer.crowd import gaze
 from renderer.crowd.bodies import build_figures
+from renderer.crowd.culling import Spheres
 from renderer.crowd.eye_groups import (
     CAUSTIC_STEP_DEG,
     IRISES,
@@ -68,13 +69,14 @@ def test_all_sixty_eyes_are_in_the_group_view_and_nobody_hides_one(
     assert sizes.min() > PAINTED_PX, "every eye is a real one"
     assert sizes.max() > 4 * sizes.min()
     assert len({default_policy().choose(px) for px in sizes}) >= 2
+    bounds = Spheres(figures).carried(bones)
     camera = np.array(CAMERA_MM)
     pupils = placed[:, :3, 3] + 13.0 * placed[:, :3, 2]
     for eye, pupil in enumerate(pupils):
         towards = (pupil - camera) / np.linalg.norm(pupil - camera)
         for number, figure in enumerate(figures):
             if number != gazes.figure[eye]:
-                centres = figure.carry_spheres(bones[number]) - camera
+                centres = np.split(bounds.centres_mm, bounds.firsts[1:])[number] - camera
                 along = centres @ towards
                 off = np.linalg.norm(centres - along[:, None] * towards, axis=1)
                 is_before = (along > 0) & (along < np.linalg.norm(pupil - camera))

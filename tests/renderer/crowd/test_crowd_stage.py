@@ -107,7 +107,12 @@ def test_culling_changes_no_pixel(gl: moderngl.Context, crowd: Crowd) -> None:
             gl.enable_only(moderngl.DEPTH_TEST | moderngl.CULL_FACE)
             crowd.pose(0.7)
             seen = crowd.in_view(view.projection @ view.view_matrix)
-            crowd.draw_figures(seen if numbers is None else numbers, **view.uniforms)
+            drawn = seen if numbers is None else numbers
+            crowd.skin(drawn)
+            crowd.meshes.light(
+                crowd.light, projection=view.projection, camera_mm=view.position_mm, is_marked=True
+            )
+            crowd.meshes.draw(drawn, view_matrix=view.view_matrix)
             pictures.append(target.read(components=4, dtype="f2"))
         assert len(seen) < 28
         assert pictures[0] == pictures[1]
