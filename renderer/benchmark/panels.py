@@ -52,12 +52,13 @@ def draw_lods(axes: Axes, rows: list[Cost]) -> None:
 def draw_effects(axes: Axes, rows: list[Cost]) -> None:
     """Each effect's levels, from ultra where that was measured."""
     base = "ultra" if any(row.base == "ultra" for row in rows) else rows[0].base
+    levels = [level for level in STANDARD_LODS if any(row.level == level for row in rows)]
     for place, effect in enumerate(reversed(EFFECTS)):
-        for step, level in enumerate(STANDARD_LODS):
+        for step, level in enumerate(levels):
             for row in rows:
                 if (row.base, row.effect, row.level) != (base, effect, level):
                     continue
-                y = place + 0.3 - 0.2 * step
+                y = place + 0.2 * ((len(levels) - 1) / 2 - step)
                 axes.errorbar(
                     row.ms_median, y, xerr=row.ms_mad, color=COLOURS[level], marker=MARKERS[level],
                     ms=4.5, lw=1.0,
@@ -65,6 +66,7 @@ def draw_effects(axes: Axes, rows: list[Cost]) -> None:
                 label(axes, row.ms_median + row.ms_mad, y, level, COLOURS[level])
     axes.axvline(0.0, color=QUIET, lw=0.8)
     axes.set_yticks(range(len(EFFECTS)), list(reversed(EFFECTS)))
+    axes.set_ylim(-0.6, len(EFFECTS) - 0.4)
     axes.set_xlabel(f"ms with minus without, others at {base}, one eye", fontsize=SMALL)
     axes.margins(x=0.16)
 
@@ -84,7 +86,7 @@ def draw_samples(axes: Axes, rows: list[Cost]) -> None:
     _plain_log(axes, [row.rms_percent or 0.0 for row in rows])
     axes.set_xlabel("ms of subsurface, one eye", fontsize=SMALL)
     axes.set_ylabel("rms error, %", fontsize=SMALL)
-    axes.margins(x=0.2, y=0.12)
+    axes.margins(x=0.3, y=0.12)
     axes.set_xlim(left=min(0.0, axes.get_xlim()[0]))
 
 
@@ -116,7 +118,9 @@ def draw_crowd(axes: Axes, rows: list[Cost]) -> None:
         error = [row.ms_mad for row in own]
         axes.errorbar(x, y, yerr=error, color=colour, marker=marker, ms=4.5, lw=1.3)
         told = (
-            "group, all eyes by size" if own[-1].eyes > 2 else f"{distance}, two {own[-1].lod} eyes"
+            "group, all eyes by size"
+            if distance == "group"
+            else f"{distance}, two {own[-1].lod} eyes"
         )
         label(axes, x[-1], y[-1], told, colour)
     axes.set_xticks(sorted({row.crowd or 0 for row in rows}))

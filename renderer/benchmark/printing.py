@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import Final
 
 from renderer.benchmark.cells import Table
@@ -9,20 +10,23 @@ from renderer.benchmark.clock import WALL
 from renderer.benchmark.result import Bench
 from renderer.benchmark.tables import tables_of
 
+WIDTH: Final = 100  # of prose in a terminal
 BUSY: Final = 1.75  # times its own load: what tells that a benchmark was not alone
 
 
 def as_text(bench: Bench) -> str:
     """Return all tables for a terminal."""
-    return "\n\n".join([_about(bench), *map(_text, tables_of(bench))])
+    about = (fill(paragraph, WIDTH) for paragraph in _about(bench))
+    return "\n\n".join([*about, *map(_text, tables_of(bench))])
 
 
 def as_markdown(bench: Bench) -> str:
     """Return all tables as Markdown, under headings of the third level."""
-    return "\n\n".join([_about(bench), *map(_markdown, tables_of(bench))])
+    return "\n\n".join([*_about(bench), *map(_markdown, tables_of(bench))])
 
 
-def _about(bench: Bench) -> str:
+def _about(bench: Bench) -> list[str]:
+    """Return the conditions, and a warning where they were bad."""
     about = bench.about
     quick = ", in a hurry (--quick)" if about.is_quick else ""
     loads = [row.load for row in bench.rows]
@@ -34,11 +38,12 @@ def _about(bench: Bench) -> str:
     )
     own = about.cores if about.clock == WALL else 1
     if max(loads, default=0.0) <= own * BUSY:
-        return conditions
-    return (
-        f"{conditions}\n\nOther work was running: the benchmark itself makes a load of about "
-        f"{own}. Times are too long, differences uncertain; measure again on a quiet machine."
-    )
+        return [conditions]
+    return [
+        conditions,
+        f"Other work was running: the benchmark itself makes a load of about {own}. Times are too "
+        "long, differences uncertain; measure again on a quiet machine.",
+    ]
 
 
 def _text(table: Table) -> str:
@@ -50,7 +55,7 @@ def _text(table: Table) -> str:
         ).rstrip()
         for row in (table.head, *table.rows)
     ]
-    return "\n".join([table.title, table.note, "", *lines])
+    return "\n".join([table.title, fill(table.note, WIDTH), "", *lines])
 
 
 def _markdown(table: Table) -> str:

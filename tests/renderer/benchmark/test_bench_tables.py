@@ -135,7 +135,7 @@ def test_the_start_is_summed(known: Bench) -> None:
 def test_the_conditions_head_both_forms(known: Bench) -> None:
     quick = replace(known, about=replace(known.about, is_quick=True))
     for text in (as_text(quick), as_markdown(quick)):
-        first = text.splitlines()[0]
+        first = " ".join(text.split("\n\n")[0].splitlines())
         for said in ("llvmpipe", "1920x1080 pixels", "wall time", "load 0.25", "--quick"):
             assert said in first
     assert "--quick" not in as_text(known)
@@ -143,8 +143,15 @@ def test_the_conditions_head_both_forms(known: Bench) -> None:
     assert "### Memory" in as_markdown(known).splitlines()
 
 
+def test_prose_is_wrapped_for_a_terminal_and_not_for_a_document(known: Bench) -> None:
+    def longest(text: str) -> int:
+        return max(len(line) for line in text.splitlines() if "  " not in line and "|" not in line)
+
+    assert longest(as_text(known)) <= 100 < longest(as_markdown(known))
+
+
 def test_the_load_meanwhile_is_told_and_too_much_of_it_too(known: Bench, on_a_gpu: Bench) -> None:
-    assert "load 0.25 before, 1.5 to 1.5 meanwhile" in as_text(known)
+    assert "load 0.25 before, 1.5 to 1.5 meanwhile" in as_markdown(known)
     assert "Other work" not in as_text(known)
     busy = replace(known, rows=[*known.rows, replace(known.rows[0], load=3.6)])
     assert "Other work was running: the benchmark itself makes a load of about 2." in as_text(busy)
