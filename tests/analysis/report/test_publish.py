@@ -135,6 +135,14 @@ def test_the_report_names_costs_versions_and_formulas(published: Summary) -> Non
         assert wanted in text
 
 
+def test_short_tables_are_printed_on_one_page(published: Summary) -> None:
+    text = published.report.read_text(encoding="utf-8")
+    found = re.findall(r'<div class="scroll( short)?".*?<tbody>(.*?)</tbody>', text, re.DOTALL)
+    rows = {(bool(short), body.count("<tr>") <= 12) for short, body in found}
+    assert rows == {(True, True), (False, False)}
+    assert ".short { break-inside: avoid; } thead, tbody tr:nth-child(-n+3) { break-after" in text
+
+
 def test_the_terminal_gets_one_line_per_distance(published: Summary) -> None:
     lines = published.lines()
     assert lines[0] == "SIMULATED DATA"
