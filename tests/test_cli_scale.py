@@ -55,7 +55,7 @@ def test_the_bytes_are_the_same_whoever_renders_them(
     assert len(far) == 1
     assert far.items() < alone.items()
     out = capsys.readouterr().out.splitlines()
-    assert [line.split(" clips")[0] for line in out] == ["2", "2", "1"]
+    assert [line.split(",")[0] for line in out] == ["2 clips", "2 clips", "1 clip"]
     for folder, brought in (("two", alone), ("cluster", far)):
         names = {path.name for path in (tmp_path / folder).iterdir()}
         assert names == {f"{name}.mp4" for name in brought} | {MANIFEST_NAME, ".manifest.lock"}

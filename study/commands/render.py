@@ -104,7 +104,8 @@ def run(options: argparse.Namespace) -> int:
                 )
     warn_of_missed(records)
     megabytes = sum(record.file_bytes for record in records) / 1e6
-    print(f"{len(records)} clips, {megabytes:.1f} MB, in {folder}")
+    count = f"{len(records)} clip{'' if len(records) == 1 else 's'}"
+    print(f"{count}, {megabytes:.1f} MB, in {folder}")
     drawn_by = sorted({f"{record.gl_renderer}, {record.gl_version}" for record in records})
     if len(drawn_by) > 1:
         print(

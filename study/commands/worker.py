@@ -59,7 +59,8 @@ def run(options: argparse.Namespace) -> int:
         studio.close()
         db.close()
     if options.until_empty:
-        print(f"{rendered} clips rendered into {settings.media_folder}")
+        count = f"{rendered} clip{'' if rendered == 1 else 's'}"
+        print(f"{count} rendered into {settings.media_folder}")
     return 0
 
 
