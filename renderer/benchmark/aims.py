@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any, Final
 
 from renderer.benchmark.clock import WARM_UP
-from renderer.benchmark.crowd import told_of
+from renderer.benchmark.crowd import FromTheFront, told_of
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import BOTH, Stand, Step
 from renderer.benchmark.verdicts import GPU_AIMS, SIZE
@@ -74,5 +74,5 @@ def _measure_group(stand: Stand, bench: Bench) -> None:
     spec = _spec(crowd=CROWDS[-1])
     with drawn_as_on_a_gpu():
         group = GroupRenderer(stand.studio.gl, spec)
-        (shots,) = stand.time([group], are_whole=True)
+        (shots,) = stand.time([FromTheFront(group)], are_whole=True)
     bench.rows.append(stand.frame_row(PART, spec, shots, **told_of(group)))
