@@ -12,7 +12,7 @@ from collections import OrderedDict
 from dataclasses import dataclass, replace
 from typing import Final
 
-from renderer.camera import IRIS_PX, View, iris_px, radius_of_px, views
+from renderer.camera import IRIS_PX, iris_px, radius_of_px, views
 from renderer.clip import ClipSpec
 from renderer.detail import LEVELS, Detail
 from renderer.frame.frame import FrameRenderer
@@ -21,6 +21,7 @@ from renderer.gl.context import is_software
 from renderer.lod.path import Places, Shares, places_of_view, shares_of
 from renderer.overhead import overhead_view, reach_mm
 from renderer.studio import Studio
+from renderer.view import View
 
 KEPT_RENDERERS: Final = 4  # the last ones stay, so that a key goes there and back quickly
 BOTH: Final = (0, 1)

@@ -11,9 +11,9 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import View, look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.crowd.stage import FRONT, GROUND_MM, Member, members
+from renderer.view import View, look_at, perspective
 
 FOV_DEG: Final = 24.0
 TOWARDS: Final = (0.35, 0.56, 0.75)  # from the scene to its camera: high, to one side

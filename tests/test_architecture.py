@@ -27,6 +27,7 @@ PURE_RENDERER = (
             "lod.policy",
             "manifest",
             "sources",
+            "view",
         )
     ),
 )

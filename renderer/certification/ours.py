@@ -14,7 +14,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import eye_centre_mm, look_at
+from renderer.camera import eye_centre_mm
 from renderer.certification.environments import FACE_PX, SoftEnvironment
 from renderer.certification.view import HALF_MM, TARGET_MM, View
 from renderer.clip import ClipSpec
@@ -22,6 +22,7 @@ from renderer.detail import Detail
 from renderer.eye.calibration import open_lids
 from renderer.eye.eyes import Eyes
 from renderer.light import Light
+from renderer.view import look_at
 
 Picture = npt.NDArray[np.float32]
 

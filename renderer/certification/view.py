@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import ndimage
 
-from renderer.camera import Matrix, camera_radius_mm, look_at, perspective
+from renderer.camera import camera_radius_mm
 from renderer.eye.anatomy import CORNEA_IOR, GLOBE_RADIUS_MM, LIMBUS_Z_MM, PROFILE_END_MM
 from renderer.eye.optics import (
     cornea_share,
@@ -22,6 +22,7 @@ from renderer.eye.optics import (
     surface_normal,
     to_iris_plane,
 )
+from renderer.view import Matrix, look_at, perspective
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]

@@ -14,7 +14,6 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import View
 from renderer.clip import ClipSpec
 from renderer.crowd.bodies import build_figures
 from renderer.crowd.culling import Bounds, Spheres
@@ -29,6 +28,7 @@ from renderer.gl.context import chooses_parts
 from renderer.light import Light
 from renderer.lod.choice import LodPolicy
 from renderer.lod.policy import default_policy
+from renderer.view import View
 
 Floats = npt.NDArray[np.float64]
 Matrix = npt.NDArray[np.floating]

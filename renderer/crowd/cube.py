@@ -15,7 +15,6 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import perspective
 from renderer.crowd.crowd import Crowd
 from renderer.crowd.cube_tiles import TILES, Bools, cover, touched
 from renderer.crowd.stage import GROUND_MM
@@ -23,6 +22,7 @@ from renderer.gl.context import chooses_parts
 from renderer.gl.uniforms import constant
 from renderer.park.cube_faces import face_view
 from renderer.park.cube_target import CubeTarget, Rectangle
+from renderer.view import perspective
 
 Floats = npt.NDArray[np.float64]
 

@@ -12,10 +12,10 @@ from typing import Final
 
 import numpy as np
 
-from renderer.camera import View, look_at, perspective
 from renderer.crowd.cast import CAST
 from renderer.crowd.people import Person
 from renderer.crowd.stage import Member, Point
+from renderer.view import View, look_at, perspective
 
 FOV_DEG: Final = 32.0  # vertical
 CAMERA_MM: Final[Point] = (0.0, 560.0, 3000.0)  # 2.2 m above the ground

@@ -12,12 +12,13 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import View, eye_centre_mm, views
+from renderer.camera import eye_centre_mm, views
 from renderer.clip import ClipSpec
 from renderer.encoding.fidelity import Rectangle, eye_rectangles
 from renderer.encoding.regions import Box, Stretch
 from renderer.head.lid_pose import lid_poses
 from renderer.head.lid_rims import rim_curves
+from renderer.view import View
 
 Mask = npt.NDArray[np.bool_]
 Points = npt.NDArray[np.float64]

@@ -6,9 +6,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from renderer.camera import VERTICAL_FOV_DEG, View, views
+from renderer.camera import VERTICAL_FOV_DEG, views
 from renderer.clip import ClipSpec
 from renderer.exchange.meshes import Floats
+from renderer.view import View
 
 CONVENTIONS: Final = {
     "matrices": "rows of a matrix that multiplies column vectors from the left",

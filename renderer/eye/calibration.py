@@ -14,13 +14,13 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import look_at, perspective
 from renderer.eye.anatomy import IRIS_Z_MM
 from renderer.eye.caustics import MAP_EDGE_MM
 from renderer.eye.chamber import chamber_irradiance
 from renderer.eye.lids import LidRims
 from renderer.gl.program import Program
 from renderer.spherical_harmonics import ambient_uniforms
+from renderer.view import look_at, perspective
 
 Array = npt.NDArray[np.float64]
 

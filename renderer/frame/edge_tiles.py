@@ -15,10 +15,10 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import View
 from renderer.frame.boxes import Box, Boxes
 from renderer.gl.context import chooses_parts
 from renderer.gl.program import build_program
+from renderer.view import View
 
 TILE_PX: Final = 8  # edge_tiles.frag reads blocks of two by two such tiles
 OPEN, EDGE = 64, 192  # it answers from here on where nothing was drawn, and where edges may be

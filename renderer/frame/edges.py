@@ -7,10 +7,10 @@ from typing import Any
 
 import moderngl
 
-from renderer.camera import View
 from renderer.frame.edge_tiles import EdgeTiles, depth_step
 from renderer.frame.outlines import Outlines
 from renderer.gl.program import build_program
+from renderer.view import View
 
 ALWAYS, MARKED, USUAL = "1", ">", "<"  # tests of depth; an edge's is 0, a triangle's 0.5
 

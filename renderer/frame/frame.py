@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import moderngl
 
-from renderer.camera import IRIS_PX, View, radius_of_px, views
+from renderer.camera import IRIS_PX, radius_of_px, views
 from renderer.clip import ClipSpec
 from renderer.crowd.cube import CrowdCube
 from renderer.eye.cube_size import cube_px
@@ -16,6 +16,7 @@ from renderer.frame.picture import Picture, Pixels, Radiance
 from renderer.frame.view_passes import PASSES, ViewPasses
 from renderer.lod.path import Places, details_of, places_of_clip, places_of_view, shares_of
 from renderer.scene import Scene, build_scene, scene_key
+from renderer.view import View
 
 
 @dataclass(frozen=True)

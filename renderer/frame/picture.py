@@ -9,12 +9,12 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import View
 from renderer.frame.bloom import SHARE, Bloom
 from renderer.frame.edge_tiles import EdgeFinder, EdgeTiles
 from renderer.frame.edges import Edges
 from renderer.frame.outlines import Outlines
 from renderer.gl.program import build_program
+from renderer.view import View
 
 EXPOSURE: Final = 0.8  # one fixed exposure for every clip: no auto-exposure, fair pairs
 

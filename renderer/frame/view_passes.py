@@ -7,11 +7,11 @@ from typing import Final
 
 import moderngl
 
-from renderer.camera import CameraUniforms, View
 from renderer.eye.eyes import Eyes
 from renderer.frame.edge_tiles import EdgeTiles
 from renderer.frame.outlines import Outlines
 from renderer.scene import Scene
+from renderer.view import CameraUniforms, View
 
 # What a view is drawn by, in this order: what lets something through lies over what does not.
 PASSES: Final = ("head", "eyes", "tears", "bystanders", "background", "hair")

@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.camera import Matrix
 from renderer.gl.context import chooses_parts
 from renderer.gl.program import Program
 from renderer.head.cells import Cells, sort_into_cells
+from renderer.view import Matrix
 
 STATIC: Final = ("3f 3f 3f 4f 1f", ["in_position", "in_normal", "in_albedo", "in_detail", "in_lid"])
 LIT: Final = ("3f 4f", ["in_diffuse", "in_surface"])

@@ -12,7 +12,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import Matrix, eye_centre_mm
+from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.eye.lids import LidRims
 from renderer.frame.bare_mesh import BareMesh
@@ -32,6 +32,7 @@ from renderer.head.strands import blending, strand_programs
 from renderer.head.surfaces import cap_surface, cloth_surface, skin_surfaces
 from renderer.head.tears import TearLine
 from renderer.light import Light
+from renderer.view import Matrix
 
 CLOSE_MM: Final = 800.0  # nearer cameras get the fine meshes
 KNIT_PX_PER_MM: Final = 60.0  # of the knit's tile; more than it has: wool looks soft, not sharp

@@ -8,12 +8,12 @@ from typing import Any
 import moderngl
 
 from renderer.body.makehuman import Floats
-from renderer.camera import Matrix
 from renderer.gl.program import build_program
 from renderer.head.buffers import CellMesh
 from renderer.head.face_mesh import face_mesh
 from renderer.head.skin_maps import SkinMaps
 from renderer.head.surfaces import SKIN_KINDS
+from renderer.view import Matrix
 
 
 class SkinDrawing:

@@ -12,11 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.camera import Matrix
 from renderer.gl.context import chooses_parts
 from renderer.gl.program import Program, build_program
 from renderer.head.cells import sort_into_cells
 from renderer.head.strand_group import Strands
+from renderer.view import Matrix
 
 SILHOUETTE: Final = 0.3  # sine of how far beyond the horizon of its body hair may still be seen
 LAYOUT = ("3f 3f 4f 4f", ["in_position", "in_tangent", "in_ribbon", "in_colour"])

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Final
 
-from renderer.camera import cropped, views
+from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import STANDARD_LODS, Detail
 from renderer.encoding.fidelity import Rectangle, eye_rectangles
@@ -22,6 +22,7 @@ from renderer.lod.policy import PolicyFile
 from renderer.lod.visibility import JUST_NOTICEABLE, PIXELS_PER_DEGREE, visible_difference
 from renderer.sources import code_version
 from renderer.studio import Studio
+from renderer.view import cropped
 
 REFERENCE_SIZE: Final = (1920, 1080)  # of the frame that rectangles are cut from
 LEAST_CROP_PX: Final = 64  # rectangles of small eyes are rendered with what lies around them

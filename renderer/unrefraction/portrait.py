@@ -9,7 +9,7 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import eye_centre_mm, look_at, perspective
+from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.colour import linear_to_srgb
 from renderer.eye.anatomy import LIMBUS_Z_MM
@@ -17,6 +17,7 @@ from renderer.eye.calibration import open_lids
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import gaze_rotation
 from renderer.light import Light, Sky
+from renderer.view import look_at, perspective
 
 Array = npt.NDArray[np.float64]
 

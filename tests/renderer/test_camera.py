@@ -10,9 +10,7 @@ import pytest
 from renderer.camera import (
     IRIS_PX,
     LIMBUS_Z_MM,
-    View,
     camera_radius_mm,
-    cropped,
     eye_centre_mm,
     iris_px,
     iris_px_of_frame,
@@ -20,6 +18,7 @@ from renderer.camera import (
 )
 from renderer.clip import DISTANCES, ClipSpec
 from renderer.detail import Detail
+from renderer.view import View, cropped
 
 LOW = Detail.uniform("low")
 

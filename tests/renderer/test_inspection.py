@@ -10,7 +10,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import View, radius_of_px
+from renderer.camera import radius_of_px
 from renderer.clip import ClipSpec
 from renderer.crowd.stage import FRONT, STAGE
 from renderer.detail import Detail
@@ -19,6 +19,7 @@ from renderer.gl.context import identify
 from renderer.inspection import Inspector, Viewpoint, at_least_as_sharp
 from renderer.overhead import on_picture, overhead_view, reach_mm
 from renderer.scene import Scene
+from renderer.view import View
 
 LOW = Detail.uniform("low")
 SPEC = ClipSpec(left=LOW, right=LOW, distance="near", width=192, height=108, crowd=0)

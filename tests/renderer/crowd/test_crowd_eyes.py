@@ -8,7 +8,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import LIMBUS_Z_MM, iris_px, look_at, perspective, views
+from renderer.camera import LIMBUS_Z_MM, iris_px, views
 from renderer.clip import ClipSpec
 from renderer.crowd import gaze
 from renderer.crowd.bodies import build_figures
@@ -34,6 +34,7 @@ from renderer.eye.caustics import caustic_map
 from renderer.lod.choice import LodPolicy, LodStep
 from renderer.lod.policy import default_policy
 from renderer.scene import Scene
+from renderer.view import look_at, perspective
 
 LOW = Detail.uniform("low")
 SPEC = ClipSpec(left=LOW, right=LOW, width=640, height=360, crowd=30)

@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import eye_centre_mm, look_at, perspective
+from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye import maps as eye_maps
@@ -27,6 +27,7 @@ from renderer.gl.program import Program, build_program
 from renderer.iris.maps import IrisMaps
 from renderer.iris.source import Iris, iris_of
 from renderer.light import Light, Sky
+from renderer.view import look_at, perspective
 
 ALBEDO = np.array([0.3, 0.2, 0.1], np.float32)
 TISSUE = Tissue(np.full((4, 3), 3.0), np.full((4, 3), 5.0), np.full(4, 0.3))

@@ -6,7 +6,6 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye import eyes as eyes_module
@@ -14,6 +13,7 @@ from renderer.eye.eyes import Eyes
 from renderer.eye.silhouette import Box, common_box
 from renderer.frame.frame import FrameRenderer
 from renderer.scene import Scene
+from renderer.view import look_at, perspective
 
 LOW, HIGH = Detail.uniform("low"), Detail.uniform("high")
 AZIMUTHS_DEG = (-50.0, 0.0, 35.0)

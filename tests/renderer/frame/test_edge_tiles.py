@@ -8,11 +8,11 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import View, look_at, perspective
 from renderer.frame.bare_mesh import GROUP, BareMesh, along_curve
 from renderer.frame.boxes import Boxes
 from renderer.frame.edge_tiles import TILE_PX, EdgeFinder, EdgeTiles, runs_of
 from renderer.gl.program import build_program
+from renderer.view import View, look_at, perspective
 
 SIZE: Final = (208, 152)  # the second view's tiles reach beyond the picture
 CAMERA_MM: Final = np.array([0.0, 0.0, 1000.0])

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from renderer.camera import View, look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.frame.edge_tiles import depth_step
@@ -18,6 +17,7 @@ from renderer.frame.frame import FrameRenderer
 from renderer.frame.outlines import EYE
 from renderer.frame.picture import EXPOSURE, Picture
 from renderer.scene import Scene
+from renderer.view import View, look_at, perspective
 
 SIZE: Final = 64
 CAMERA_MM: Final = np.array([0.0, 0.0, 1000.0])

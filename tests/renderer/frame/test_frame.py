@@ -13,7 +13,7 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import cropped, views
+from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, TABLE, Detail
 from renderer.encoding.fidelity import eye_rectangles
@@ -21,6 +21,7 @@ from renderer.frame.frame import Frame, FrameRenderer
 from renderer.gl.context import identify
 from renderer.production.batch import render_clip
 from renderer.scene import Scene
+from renderer.view import cropped
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
 SPEC = ClipSpec(left=LOW, right=ULTRA, width=320, height=180, duration_s=0.1, orbit_deg=60)

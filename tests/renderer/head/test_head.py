@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from renderer.camera import INTEROCULAR_MM, Matrix, look_at, perspective
+from renderer.camera import INTEROCULAR_MM
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.head.cells import sort_into_cells
@@ -23,6 +23,7 @@ from renderer.head.lid_outline import OUTLINE_MM
 from renderer.head.patch_space import to_patch
 from renderer.head.sun_shadow import build_light
 from renderer.light import Light, Sky
+from renderer.view import Matrix, look_at, perspective
 
 SIZE = (160, 120)
 Place = tuple[float, float, float]

@@ -6,13 +6,14 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import Matrix, eye_centre_mm, look_at, perspective
+from renderer.camera import eye_centre_mm
 from renderer.eye.geometry import eye_mesh
 from renderer.eye.model import gaze_rotation
 from renderer.gl.program import Program, build_program
 from renderer.head.face_mesh import face_mesh
 from renderer.head.lid_pose import LidPose
 from renderer.head.skin_part import SkinPart
+from renderer.view import Matrix, look_at, perspective
 
 SIZE = (128, 128)
 

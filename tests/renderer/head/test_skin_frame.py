@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from renderer.camera import look_at, perspective
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.head.head import Head
 from renderer.head.sun_shadow import build_light
 from renderer.light import Light, Sky
+from renderer.view import look_at, perspective
 
 SIZE: Final = (288, 192)
 CHEEK: Final = (33.0, -25.0, 12.0)
