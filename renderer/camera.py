@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.clip import ClipSpec
+from renderer.clip_values import REFERENCE_LINES
 from renderer.view import View, look_at, perspective
 
 VERTICAL_FOV_DEG: Final = 12.0  # a portrait lens: no wide-angle faces
-REFERENCE_LINES: Final = 1080
 IRIS_DIAMETER_MM: Final = 11.7  # horizontal visible iris diameter, 11.71 +- 0.42
 LIMBUS_Z_MM: Final = 10.19  # limbus plane in front of the globe's centre, sqrt(11.75^2 - 5.85^2)
 INTEROCULAR_MM: Final = 62.0

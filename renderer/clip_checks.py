@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
+
+from renderer.clip_values import CHOICES, RANGES, REFERENCE_LINES
 
 if TYPE_CHECKING:
     from renderer.clip import ClipSpec
 
 # Both open eyes span 62 mm between their centres and an aperture of 2.6 irises: 7.9 irises.
 APPROACH_WIDTH_IRISES: Final = 7.9
-REFERENCE_LINES: Final = 1080
 _SHA256: Final = re.compile("[0-9a-f]{64}")
 
 
-def clip_faults(
-    spec: ClipSpec,
-    choices: Mapping[str, Collection[object]],
-    ranges: Mapping[str, tuple[float, float]],
-) -> list[str]:
+def clip_faults(spec: ClipSpec) -> list[str]:
     """Return what is wrong with a spec, field by field; nothing where all is right."""
     return [
-        *_unknown(spec, choices),
-        *_outside(spec, ranges),
+        *_unknown(spec),
+        *_outside(spec),
         *_environment_faults(spec),
         *_iris_faults(spec),
         *_number_faults(spec),
@@ -32,15 +29,15 @@ def clip_faults(
     ]
 
 
-def _unknown(spec: ClipSpec, choices: Mapping[str, Collection[object]]) -> Iterator[str]:
-    for name, accepted in choices.items():
+def _unknown(spec: ClipSpec) -> Iterator[str]:
+    for name, accepted in CHOICES.items():
         if getattr(spec, name) not in accepted:
             listed = ", ".join(map(str, accepted))
             yield f'{name}: unknown value "{getattr(spec, name)}"; choose one of {listed}'
 
 
-def _outside(spec: ClipSpec, ranges: Mapping[str, tuple[float, float]]) -> Iterator[str]:
-    for name, (low, high) in ranges.items():
+def _outside(spec: ClipSpec) -> Iterator[str]:
+    for name, (low, high) in RANGES.items():
         if not low <= getattr(spec, name) <= high:
             yield f"{name}: {getattr(spec, name)} lies outside {low} to {high}"
 

@@ -21,6 +21,7 @@ PURE_RENDERER = (
             "camera",
             "clip",
             "clip_checks",
+            "clip_values",
             "detail",
             "lod",
             "lod.choice",

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from renderer.clip import CROWDS
+from renderer.clip_values import CROWDS
 from renderer.detail import Detail
 from renderer.lod.choice import LodPolicy, LodStep
 from renderer.lod.policy import Evidence, PolicyFile, default_policy, write_policy

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
 from typing import Any, Final
 
 from renderer.benchmark.clock import WARM_UP
@@ -16,7 +15,8 @@ from renderer.benchmark.crowd import FromTheFront, told_of
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import BOTH, Stand, Step
 from renderer.benchmark.verdicts import GPU_AIMS, SIZE
-from renderer.clip import CROWDS, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import CROWDS
 from renderer.crowd.group import GroupRenderer
 from renderer.detail import Detail
 from renderer.eye.cube_size import cube_px
@@ -31,9 +31,12 @@ _NAMES: Final = "SOFTWARE"  # what software GL is known by, a constant but for h
 
 def aim_steps(rounds: int, *, is_quick: bool) -> list[Step]:
     """Return a step per aim; being in a hurry changes nothing but the rounds."""
-    weight = 2.0 * (rounds + WARM_UP) + (100.0 if is_quick else 40.0)  # set up in a new scene
-    measures = {"macroscopic": _measure_eyes, "group": _measure_group}
-    return [Step(PART, aim.title, weight, partial(measures[at])) for at, aim in GPU_AIMS.items()]
+    frames = (8.0 if is_quick else 2.0) * (rounds + WARM_UP)  # larger than the others in a hurry
+    measures = {"macroscopic": (_measure_eyes, 60.0), "group": (_measure_group, 20.0)}
+    return [
+        Step(PART, GPU_AIMS[at].title, frames + setting_up, measure)
+        for at, (measure, setting_up) in measures.items()
+    ]
 
 
 def _spec(**changes: Any) -> ClipSpec:

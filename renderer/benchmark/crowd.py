@@ -15,7 +15,7 @@ from typing import Any, Final
 from renderer.benchmark.clock import WARM_UP
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import BOTH, Stand, Step
-from renderer.clip import CROWDS
+from renderer.clip_values import CROWDS
 from renderer.crowd.group import GroupRenderer
 from renderer.detail import Detail
 from renderer.frame.frame import Frame

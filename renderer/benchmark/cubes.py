@@ -14,7 +14,7 @@ from renderer.benchmark.clock import WARM_UP
 from renderer.benchmark.result import Bench
 from renderer.benchmark.spread import difference
 from renderer.benchmark.stand import BOTH, Stand, Step
-from renderer.clip import CUBE_SIZES
+from renderer.clip_values import CUBE_SIZES
 from renderer.crowd.cube import CrowdCube
 from renderer.detail import Detail
 from renderer.eye.cube_size import cube_px

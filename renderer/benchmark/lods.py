@@ -13,7 +13,7 @@ from typing import Final
 from renderer.benchmark.clock import WARM_UP
 from renderer.benchmark.result import Bench
 from renderer.benchmark.stand import BOTH, ONE, Stand, Step
-from renderer.clip import DISTANCES
+from renderer.clip_values import DISTANCES
 from renderer.detail import STANDARD_LODS, Detail
 
 PART: Final = "lods"

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from renderer.camera import IRIS_DIAMETER_MM, IRIS_PX, REFERENCE_LINES
+from renderer.camera import IRIS_DIAMETER_MM, IRIS_PX
 from renderer.clip import ClipSpec
+from renderer.clip_values import REFERENCE_LINES
 from renderer.detail import Detail
 from renderer.eye.anatomy import CORNEA_RADIUS_MM
 

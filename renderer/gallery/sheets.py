@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from renderer.clip import DISTANCES
+from renderer.clip_values import DISTANCES
 from renderer.detail import STANDARD_LODS
 from renderer.gallery.shots import WHOLE, Shot, spec_of
 from renderer.gallery.strips import Strip, of_shots

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from renderer.clip import DISTANCES, IRIS_COLOURS
+from renderer.clip_values import DISTANCES, IRIS_COLOURS
 from renderer.detail import EFFECTS, STANDARD_LODS, Detail
 from renderer.gallery.shots import (
     BOTH_EYES,

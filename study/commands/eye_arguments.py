@@ -31,7 +31,7 @@ def add_lod_policy(parser: argparse.ArgumentParser, *, used_by: str) -> None:
 
 
 def _add_lods(parser: argparse.ArgumentParser) -> None:
-    from renderer.clip import PRESETS
+    from renderer.clip_values import PRESETS
     from renderer.detail import LEVELS
 
     for side in SIDES:
@@ -61,7 +61,7 @@ def _add_lods(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_view(parser: argparse.ArgumentParser) -> None:
-    from renderer.clip import DISTANCES
+    from renderer.clip_values import DISTANCES
 
     parser.add_argument(
         "--distance",
@@ -88,7 +88,7 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_eyes(parser: argparse.ArgumentParser) -> None:
-    from renderer.clip import CAUSTIC_PATTERNS, CUBE_SIZES
+    from renderer.clip_values import CAUSTIC_PATTERNS, CUBE_SIZES
 
     parser.add_argument(
         "--gaze",
@@ -138,7 +138,7 @@ def _add_eyes(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_surroundings(parser: argparse.ArgumentParser) -> None:
-    from renderer.clip import CROWDS
+    from renderer.clip_values import CROWDS
 
     parser.add_argument(
         "--environment",

@@ -144,7 +144,7 @@ def effect_level(text: str) -> tuple[tuple[str, ...], str, str]:
 @reading
 def iris(text: str) -> dict[str, Any]:
     """Read ``7``, ``brown``, ``7:brown`` or an iris file as the fields of a clip's spec."""
-    from renderer.clip import IRIS_COLOURS
+    from renderer.clip_values import IRIS_COLOURS
 
     if text.endswith(".npz"):
         return _iris_file(Path(text))

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BeforeValidator
 
 from renderer.camera import IRIS_PX
-from renderer.clip import DISTANCES
+from renderer.clip_values import DISTANCES
 from renderer.lod.choice import LodPolicy
 from renderer.lod.policy import default_policy, parse_policy
 from study.design.faults import Fault, dotted, refuse, unknown

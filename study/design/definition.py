@@ -14,7 +14,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from renderer.clip import DIRECTIONS
+from renderer.clip_values import DIRECTIONS
 from study.design.attention import late_attention
 from study.design.checks import cross_faults
 from study.design.faults import DefinitionError, Fault, faults_of, suggestion

@@ -19,7 +19,8 @@ from pydantic import (
     model_validator,
 )
 
-from renderer.clip import ENVIRONMENTS, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import ENVIRONMENTS
 from renderer.detail import Detail
 from study.design.faults import refuse
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from renderer.clip import DIRECTIONS, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import DIRECTIONS
 from renderer.detail import EFFECTS, Detail
 from renderer.lod.choice import LodPolicy
 from study.design.approach import policy_of

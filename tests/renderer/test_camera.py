@@ -16,7 +16,8 @@ from renderer.camera import (
     iris_px_of_frame,
     views,
 )
-from renderer.clip import DISTANCES, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import DISTANCES
 from renderer.detail import Detail
 from renderer.view import View, cropped
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from renderer.camera import IRIS_PX, radius_of_px, views
-from renderer.clip import CROWDS, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import CROWDS
 from renderer.crowd.stage import FRONT, GROUND_MM, members
 from renderer.detail import Detail
 from renderer.overhead import on_picture, overhead_view, reach_mm

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from analysis.tables import codebook, columns
-from renderer import clip, detail
+from renderer import clip_values, detail
 from renderer.lod import choice
 
 
@@ -13,8 +13,8 @@ def test_words_are_those_of_the_renderer() -> None:
     assert columns.EFFECTS == detail.EFFECTS
     assert columns.LEVELS == detail.LEVELS
     assert columns.STANDARD_LODS == detail.STANDARD_LODS
-    assert columns.DISTANCES == clip.DISTANCES
-    assert choice.WIDEST_PX == columns.WIDEST_PX == clip._RANGES["width"][1]
+    assert columns.DISTANCES == clip_values.DISTANCES
+    assert choice.WIDEST_PX == columns.WIDEST_PX == clip_values.RANGES["width"][1]
 
 
 def test_ratings_have_the_contracts_columns_in_its_order() -> None:

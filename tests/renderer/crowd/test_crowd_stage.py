@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from renderer.camera import camera_radius_mm, views
-from renderer.clip import CROWDS, DISTANCES, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import CROWDS, DISTANCES
 from renderer.crowd.bodies import build_figures
 from renderer.crowd.cast import CAST, TEMPLATES
 from renderer.crowd.crowd import Crowd

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from renderer.clip import DISTANCES, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import DISTANCES
 from renderer.detail import Detail
 from renderer.encoding.bounds import fineness, max_bytes, max_rate, missed_bounds
 from renderer.encoding.comparison import Fidelity

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from renderer.clip import DISTANCES, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import DISTANCES
 from renderer.detail import Detail
 from renderer.encoding.eye_boxes import STRETCHES, eye_boxes, frame_rectangles
 from renderer.encoding.regions import Box, Stretch

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from renderer.clip import DISTANCES, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import DISTANCES
 from renderer.detail import Detail
 from renderer.encoding.fidelity import eye_rectangles, psnr_db, ssim
 

@@ -12,7 +12,8 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.clip import DISTANCES, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import DISTANCES
 from renderer.detail import Detail
 from renderer.frame.frame import FrameRenderer
 from renderer.scene import Scene

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from renderer.clip import DISTANCES, IRIS_COLOURS, ClipSpec
+from renderer.clip import ClipSpec
+from renderer.clip_values import DISTANCES, IRIS_COLOURS
 from renderer.detail import EFFECTS, STANDARD_LODS, Detail
 from renderer.gallery import making, page, strips
 from renderer.gallery.drawing import CAPTION_PX, GAP_PX, PAPER, TITLE_PX, draw_strip

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from renderer.clip import IRIS_COLOURS
+from renderer.clip_values import IRIS_COLOURS
 from renderer.colour import srgb_to_linear
 from renderer.iris import maps as iris
 from renderer.iris.pigment import FAMILIES
