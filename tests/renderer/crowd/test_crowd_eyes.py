@@ -122,6 +122,22 @@ def test_each_eye_has_the_lod_of_its_size_and_one_iris_pool_serves_all(
     assert len(group.crowd._eyes._groups._irises) <= 4 * len(IRISES)
 
 
+def test_eyes_of_one_kind_are_drawn_together(group: GroupRenderer) -> None:
+    group.render(time_s=0.5)
+    eyes = group.crowd._eyes
+    assert len({run.kind for run in eyes._runs}) == len(eyes._runs)
+    details = {(eye.figure, eye.eye): crowd_detail(eye.detail) for eye in group.eyes_drawn}
+    drawn = []
+    for run in eyes._runs:
+        assert run.first == len(drawn)
+        for row in eyes._rows[run.first : run.first + run.count].tolist():
+            figure, eye = divmod(row, 2)
+            person = group.crowd.figures[figure].member.person
+            assert run.kind == (details[figure, eye], person.eye)
+            drawn.append((figure, eye))
+    assert sorted(drawn) == sorted(details)
+
+
 def test_sizes_follow_the_pictures_lines(gl: moderngl.Context, group: GroupRenderer) -> None:
     group.render(time_s=0.5)
     small = len(group.eyes_drawn)
