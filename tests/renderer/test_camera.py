@@ -19,7 +19,7 @@ from renderer.camera import (
 from renderer.clip import ClipSpec
 from renderer.clip_values import DISTANCES
 from renderer.detail import Detail
-from renderer.view import View, cropped
+from renderer.view import View
 
 LOW = Detail.uniform("low")
 
@@ -105,11 +105,3 @@ def test_an_approach_has_one_camera_and_the_sizes_it_names() -> None:
     both = [project(view, eye_centre_mm(eye))[0] for eye in (0, 1)]
     assert both[0] > 0.5 * 2.6 * 240.0
     assert both[1] < 1920 - 0.5 * 2.6 * 240.0
-
-
-def test_a_part_of_a_view_shows_the_same_at_the_same_size() -> None:
-    (view,) = views(ClipSpec(left=LOW, right=LOW, distance="near"), 20.0)
-    part = cropped(view, (300, 400, 600, 200))
-    assert part.rectangle == (0, 0, 600, 200)
-    for point in (eye_centre_mm(0), eye_centre_mm(0) + [3.0, -2.0, 11.0]):
-        assert project(part, point) == pytest.approx(project(view, point) - [300, 400], abs=1e-2)
