@@ -11,6 +11,7 @@ import argparse
 import importlib
 import os
 import sys
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Final, NoReturn
 
@@ -36,6 +37,7 @@ EPILOG: Final = (
     "STUDY is a built-in study (thesis, lod, ablation, approach) or the path of a study file.\n"
     "Start with: ocularist run. What a command takes: ocularist COMMAND --help"
 )
+EXAMPLE: Final = "Example:"
 _WIDTH: Final = 20  # of the commands' names in the list
 
 
@@ -45,6 +47,20 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Print where, what was found and where to read on; exit with status 2."""
         self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+class Help(argparse.HelpFormatter):
+    """Help whose lines part neither names at their hyphens nor examples: both may be copied."""
+
+    def _split_lines(self, text: str, width: int) -> list[str]:
+        return textwrap.wrap(text, width, break_on_hyphens=False)
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        if text.startswith(EXAMPLE):
+            return indent + text
+        return textwrap.fill(
+            text, width, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False
+        )
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -71,7 +87,8 @@ def build_parser() -> argparse.ArgumentParser:
             subparser = commands.add_parser(
                 name,
                 description=command.DESCRIPTION,
-                epilog=f"Example: ocularist {name} {command.EXAMPLE}".rstrip(),
+                epilog=f"{EXAMPLE} ocularist {name} {command.EXAMPLE}".rstrip(),
+                formatter_class=Help,
             )
             command.add_arguments(subparser)
             subparser.set_defaults(run=command.run)

@@ -52,6 +52,19 @@ def test_every_command_explains_itself(
     assert build_parser().parse_args(words).command == command  # what it says can be typed
 
 
+def test_help_parts_no_name_and_no_example(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    with pytest.raises(SystemExit):
+        main(["serve", "--help"])
+    said = capsys.readouterr().out
+    assert "(default: ocularist-data)" in " ".join(said.split())
+    assert said.endswith(
+        "ocularist serve thesis --host 0.0.0.0 --tls-cert cert.pem --tls-key key.pem\n"
+    )
+
+
 def test_the_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--help"])

@@ -29,8 +29,12 @@ DATABASES: Final = ("sqlite", "postgresql", "both")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
-    parser.add_argument("--people", type=count, default=200, help="at once (default: 200)")
-    parser.add_argument("--seconds", type=count, default=20, help="per run (default: 20)")
+    parser.add_argument(
+        "--people", type=count, default=200, metavar="N", help="at once (default: 200)"
+    )
+    parser.add_argument(
+        "--seconds", type=count, default=20, metavar="S", help="per run (default: 20)"
+    )
     parser.add_argument(
         "--pause",
         type=number,
@@ -38,9 +42,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="mean seconds between two requests of one person (default: none)",
     )
-    parser.add_argument("--database", choices=DATABASES, default="both")
     parser.add_argument(
-        "--processes", type=count, default=2, help="server processes on PostgreSQL (default: 2)"
+        "--database", choices=DATABASES, default="both", help="which to measure (default: both)"
+    )
+    parser.add_argument(
+        "--processes",
+        type=count,
+        default=2,
+        metavar="N",
+        help="server processes on PostgreSQL (default: 2)",
     )
     parser.add_argument(
         "--no-fsync-cost", action="store_true", help="leave out the runs without fsync"

@@ -62,6 +62,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--workers",
         type=count,
         default=1,
+        metavar="N",
         help="processes of this machine that render at the same time (default: %(default)s; "
         "software rendering uses every core already)",
     )

@@ -35,7 +35,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add this command's arguments."""
     add_study(parser)
     parser.add_argument(
-        "--participants", type=count, default=10, help="how many (default: %(default)s)"
+        "--participants",
+        type=count,
+        default=10,
+        metavar="N",
+        help="how many (default: %(default)s)",
     )
     parser.add_argument(
         "--seed",
