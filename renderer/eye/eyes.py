@@ -1,14 +1,9 @@
-"""Both eyes of a clip on the GPU, each at its LoD or between two of them.
-
-Everything that does not change within a clip (maps, light inside the eye) is made once per LoD, and
-only for the LoDs that a frame asks for.
-"""
+"""Both eyes of a clip on the GPU, each drawn at its LoD or between two of them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import replace
 from typing import Any
 
 import moderngl
@@ -16,17 +11,13 @@ import numpy as np
 
 from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
-from renderer.detail import Detail
-from renderer.eye.cube_size import cube_px
 from renderer.eye.kept import Kept
 from renderer.eye.lids import LidRims
-from renderer.eye.model import EyeModel, build_model
-from renderer.eye.morph import Morph
+from renderer.eye.model import EyeModel
+from renderer.eye.models import EyeModels, Shares, refracting
 from renderer.eye.silhouette import common_box
 from renderer.frame.edge_tiles import EdgeTiles
 from renderer.light import Light
-
-Shares = tuple[tuple[Detail, float], ...]
 
 
 class Eyes:
@@ -51,20 +42,23 @@ class Eyes:
         """
         self._gl = gl
         self._spec = spec
-        self._rims = rims
-        self._light = light
-        self._static_cube = static_cube
-        self._crowd_cube = crowd_cube
-        self._has_face = has_face
-        self._kept = kept or Kept()
-        self._built: dict[tuple[int, Detail], EyeModel] = {}
-        self._morphs: dict[tuple[Detail, Detail], Morph] = {}
+        self._models = EyeModels(
+            gl,
+            spec,
+            rims=rims,
+            light=light,
+            static_cube=static_cube,
+            crowd_cube=crowd_cube,
+            has_face=has_face,
+            kept=kept or Kept(),
+        )
         self._shares: list[Shares] = [((spec.left, 1.0),), ((spec.right, 1.0),)]
 
     @property
     def models(self) -> tuple[EyeModel, EyeModel]:
         """Both eyes at the clip's own LoDs, which switching eyes have when they are large."""
-        return self._model(0, self._spec.left), self._model(1, self._spec.right)
+        left, right = self._spec.left, self._spec.right
+        return self._models.model(0, left), self._models.model(1, right)
 
     def use(self, eye: int, shares: Shares) -> None:
         """Draw an eye with one LoD, or with two and their shares, the coarser first, from now on.
@@ -74,7 +68,7 @@ class Eyes:
         self._shares[eye] = shares
         self._drawn(eye)
         if len(shares) > 1:
-            self._morph(eye)
+            self._models.morph(self._shares[eye])
 
     def shares(self, eye: int) -> Shares:
         """Return the LoDs that an eye is drawn with."""
@@ -93,7 +87,9 @@ class Eyes:
             if len(models) > 1:
                 coarse, fine = models
                 share = self._shares[eye][1][1]
-                self._morph(eye).draw(placed, coarse=coarse.shaded, fine=fine.shaded, share=share)
+                self._models.morph(self._shares[eye]).draw(
+                    placed, coarse=coarse.shaded, fine=fine.shaded, share=share
+                )
             elif models[0].silhouette:
                 models[0].silhouette.draw(placed, models[0].shaded)
             else:
@@ -112,7 +108,9 @@ class Eyes:
         }
         with self._between_lids(models[0], np.asarray(projection) @ np.asarray(view_matrix)):
             if len(models) > 1:
-                self._morph(eye).draw_outline(placed, share=self._shares[eye][1][1])
+                self._models.morph(self._shares[eye]).draw_outline(
+                    placed, share=self._shares[eye][1][1]
+                )
             else:
                 models[0].outline.draw(placed, tiles)
 
@@ -177,22 +175,7 @@ class Eyes:
             target.scissor = kept
 
     def _drawn(self, eye: int) -> list[EyeModel]:
-        """Return the models that an eye is drawn with.
-
-        Where one of two refracts, both do, by its share: the pupil moves instead of showing twice.
-        """
-        details = [detail for detail, _ in self._shares[eye]]
-        bending = _refracting(self._shares[eye])
-        if bending is None:
-            return [self._model(eye, detail) for detail in details]
-        models = []
-        for detail in details:
-            own = self._model(eye, detail)
-            bent = self._model(eye, detail.with_levels(refraction=bending[0]))
-            models.append(
-                replace(bent, values=bent.values | {"u_iris_gain": own.values["u_iris_gain"]})
-            )
-        return models
+        return self._models.of(eye, self._shares[eye])
 
     def _set(
         self,
@@ -203,7 +186,7 @@ class Eyes:
         eye: int,
         lines: int | None = None,
     ) -> None:
-        bending = _refracting(self._shares[eye])
+        bending = refracting(self._shares[eye])
         distance_mm = float(np.linalg.norm(np.asarray(camera_mm) - eye_centre_mm(eye)))
         lines = lines or self._gl.fbo.viewport[3]
         model.program.set(
@@ -213,48 +196,3 @@ class Eyes:
             u_unbent=0.0 if bending is None else 1.0 - bending[1],
             u_mm_per_px=2 * distance_mm / (float(camera["u_projection"][1][1]) * lines),
         )
-
-    def _model(self, eye: int, detail: Detail) -> EyeModel:
-        if (eye, detail) not in self._built:
-            self._built[eye, detail] = build_model(
-                self._gl,
-                eye,
-                detail=detail,
-                spec=self._spec,
-                rims=self._rims[eye],
-                light=self._light,
-                cubes=_cubes(detail, self._spec, self._static_cube, self._crowd_cube),
-                has_face=self._has_face,
-                kept=self._kept,
-            )
-        return self._built[eye, detail]
-
-    def _morph(self, eye: int) -> Morph:
-        (coarse, _), (fine, _) = self._shares[eye]
-        if (coarse, fine) not in self._morphs:
-            self._morphs[coarse, fine] = Morph(self._gl, coarse, fine)
-        return self._morphs[coarse, fine]
-
-
-def _refracting(shares: Shares) -> tuple[str, float] | None:
-    """Return level and share of the LoD that refracts where the other one does not, else None."""
-    bent = [(d.refraction, share) for d, share in shares if d.setting("refraction", "refracts")]
-    return bent[0] if len(shares) > 1 and len(bent) == 1 else None
-
-
-def _cubes(
-    detail: Detail,
-    spec: ClipSpec,
-    static_cube: Callable[[int], moderngl.TextureCube],
-    crowd_cube: moderngl.TextureCube | None,
-) -> dict[str, moderngl.TextureCube]:
-    """Return the cubes that a LoD mirrors; raises ValueError where ultra finds no crowd."""
-    size = cube_px(detail, spec)
-    if size == 0:
-        return {}
-    cubes = {"u_static_cube": static_cube(size)}
-    if detail.setting("reflection", "mode") == "dynamic":
-        if crowd_cube is None:
-            raise ValueError("reflection=ultra mirrors moving people: it needs a crowd cube")
-        cubes["u_crowd_cube"] = crowd_cube
-    return cubes
