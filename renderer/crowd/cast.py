@@ -17,19 +17,20 @@ MORE: Final = (
         "sprinter", {"gender": 0.05, "age": 0.47, "muscle": 0.62, "weight": 0.4, "height": 0.52},
         {"caucasian": 1.0}, skin=(0.55, 0.35, 0.27), hair=(0.16, 0.09, 0.04),
         top=(0.55, 0.10, 0.16), bottom=(0.05, 0.06, 0.08), stature_mm=1710.0, smile=0.55,
-        has_short_sleeves=True, eye="green", iris=(0.09, 0.11, 0.05), body="sprinter",
+        has_short_sleeves=True, hair_style="pixie", eye="green", iris=(0.09, 0.11, 0.05),
+        body="sprinter",
     ),
     Person(
         "student", {"gender": 0.95, "age": 0.5, "muscle": 0.45, "weight": 0.42, "height": 0.5},
         {"asian": 0.8, "caucasian": 0.2}, skin=(0.46, 0.29, 0.20), hair=(0.014, 0.011, 0.011),
         top=(0.16, 0.17, 0.19), bottom=(0.07, 0.11, 0.2), stature_mm=1730.0, body="student",
-        has_short_sleeves=True,
+        hair_style="brush", has_short_sleeves=True,
     ),
     Person(
         "grandmother", {"gender": 0.0, "age": 0.84, "muscle": 0.4, "weight": 0.58, "height": 0.45},
         {"caucasian": 0.6, "african": 0.4}, skin=(0.36, 0.22, 0.16), hair=(0.44, 0.43, 0.42),
         top=(0.30, 0.20, 0.42), bottom=(0.10, 0.09, 0.09), stature_mm=1600.0, smile=0.5,
-        eye="hazel", iris=(0.08, 0.055, 0.025), body="grandmother",
+        hair_style="set", eye="hazel", iris=(0.08, 0.055, 0.025), body="grandmother",
     ),
 )  # fmt: skip
 TEMPLATES: Final = {person.name: person for person in (*PEOPLE, *MORE)}

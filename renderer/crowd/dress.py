@@ -1,4 +1,4 @@
-"""What a person of the crowd is made of: skin, clothes and hair as pieces of the base mesh.
+"""What a person of the crowd is made of: skin and clothes as pieces of the base mesh.
 
 Pure numpy. Pieces are cut on the base mesh by the place of its quads, so the same cut fits every
 build; millimetres, +z forwards.
@@ -13,7 +13,6 @@ import numpy.typing as npt
 
 from renderer.body.makehuman import Floats, base_mesh
 from renderer.body.phenotype import target_offsets
-from renderer.crowd.hair import long_hair, short_hair
 from renderer.crowd.people import Person
 from renderer.crowd.pieces import Piece, flat, group_quads, group_triangles, quad_centres
 
@@ -43,7 +42,7 @@ def pieces(person: Person) -> list[Piece]:
     loose = 9.0 + 5.0 * np.clip((300 - base[:, 1]) / 300, 0, 1)
     loose -= 6.0 * np.clip((base[:, 1] - 530) / 50, 0, 1)
     trousers = 5.0 + 7.0 * np.clip((-250 - base[:, 1]) / 300, 0, 1)
-    found = [
+    return [
         Piece("skin", body[is_head], still, skin, 1900, _face_detail(base)),
         Piece("skin", body[is_hand], still, skin, 480),
         Piece(
@@ -56,11 +55,7 @@ def pieces(person: Person) -> list[Piece]:
         ),
         Piece("bottom", tights[~is_top & ~is_shoe], trousers, flat(person.bottom, n), 560),
         Piece("shoes", tights[is_shoe], np.full(n, 9.0), flat(person.shoes, n), 160),
-        short_hair(person, base, body),
     ]
-    if person.has_long_hair:
-        found.append(long_hair(person, base))
-    return found
 
 
 def _beyond_sleeve(places: Floats, person: Person) -> Floats:

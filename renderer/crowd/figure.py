@@ -1,7 +1,7 @@
 """A person's mesh of a few thousand triangles with a skeleton, from MakeHuman's base mesh.
 
-Pure numpy: pieces are thinned, pushed outwards and joined; eyes and brows come on top. Rest pose,
-millimetres, facing +z.
+Pure numpy: pieces are thinned, pushed outwards and joined; eyes, brows and hair come on top.
+Rest pose, millimetres, facing +z.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from renderer.body.phenotype import phenotype, target_offsets
 from renderer.body.rig import Rig, fit_rig
 from renderer.crowd.dress import pieces
 from renderer.crowd.face_parts import FacePart, brows, eyes
+from renderer.crowd.hair import hair
 from renderer.crowd.hems import hem
 from renderer.crowd.people import Person
 from renderer.crowd.pieces import PARTS, Piece
@@ -89,7 +90,8 @@ def build_body(person: Person) -> Body:
         bones=bones,
         weights=shares,
     )
-    for name, made in (("eyes", eyes(person, shape)), ("brows", brows(person, shape))):
+    found = {"eyes": eyes, "brows": brows, "hair": hair}
+    for name, made in ((name, make(person, shape)) for name, make in found.items()):
         for part in made:
             body = _with_part(body, part, name)
     outline = decimate(body.positions_mm, body.triangles, target=OUTLINE_TRIANGLES)
@@ -104,8 +106,6 @@ def _thin(shape: Floats, piece: Piece) -> tuple[Indices, Floats, Floats, Floats,
     triangles = numbers[piece.triangles]
     outwards = vertex_normals(shape[used], triangles)
     positions = shape[used] + outwards * piece.push_mm[used, None]
-    if piece.shift_mm is not None:
-        positions += piece.shift_mm[used]
     importance = np.ones(len(shape)) if piece.importance is None else piece.importance
     fewer = _thinned(used.tobytes(), triangles.tobytes(), importance[used].tobytes(), piece.target)
     normals = vertex_normals(positions, triangles)
@@ -115,15 +115,10 @@ def _thin(shape: Floats, piece: Piece) -> tuple[Indices, Floats, Floats, Floats,
     if piece.turned_in_above_mm is not None:
         is_hem = base_mesh().vertices_mm[rows, 1] > piece.turned_in_above_mm
         again, places, facing, more = hem(positions, whole, is_hem=is_hem)
-        if (
-            piece.part == "hair"
-        ):  # its rim is thin: what one sees of it is lit as the hair beside it
-            facing = normals[again]
         rows = np.concatenate([rows, rows[again]])
         positions, normals = np.concatenate([positions, places]), np.concatenate([normals, facing])
         whole = np.concatenate([whole, more])
-    both = np.concatenate([whole, whole[:, ::-1]]) if piece.is_two_sided else whole
-    return rows, positions, normals, piece.surface[rows], both
+    return rows, positions, normals, piece.surface[rows], whole
 
 
 @functools.cache

@@ -1,76 +1,115 @@
-"""Hair of the crowd's people: the scalp lifted off the skull, and long hair over it. Pure numpy."""
+"""Hair of the crowd's people: locks, and what hangs from them, as a mesh that the head carries.
+
+Pure numpy, millimetres.
+"""
 
 from __future__ import annotations
 
+import zlib
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.crowd.hems import open_edges
+from renderer.body.normals import vertex_normals
+from renderer.crowd.face_parts import FacePart
+from renderer.crowd.hair_styles import STYLES, Style
+from renderer.crowd.hanging import curtain, inside_tone, is_hanging
+from renderer.crowd.locks import COLUMNS, HUNG_ROW, LOCKS, Locks, comb
 from renderer.crowd.people import Person
-from renderer.crowd.pieces import Piece, flat, group_triangles, quad_centres
 
-# Height of the hairline on the base mesh over depth: nape, behind and above the ear, temple, brow.
-_HAIRLINE: Final = (
-    (-60.0, 0.0, 12.0, 30.0, 60.0, 95.0, 120.0, 145.0),
-    (668.0, 690.0, 742.0, 742.0, 768.0, 788.0, 796.0, 800.0),
-)
-END_MM: Final = 600.0  # of long hair, just above the collar
+# In the last channel of ``surface`` of furrows and ridges: crowd.frag gives what lies between them
+# hair's highlight, and draws a strand for each share of the way.
+SHEEN: Final = (0.2, 0.45)
+_BESIDE: Final = 5  # columns on each side of the face
 
 
-def short_hair(person: Person, base: Floats, body: Indices) -> Piece:
-    """Return short hair: the scalp lifted off the skull, thinner towards the hairline."""
-    centre = quad_centres("body")
-    row = np.interp(centre[:, 2], *_HAIRLINE)
-    triangles = body[(centre[:, 1] > row) & (np.abs(centre[:, 0]) < 90)]
-    rim = np.unique(open_edges(triangles))
-    shift = _snap(base, rim)
-    # Where the line runs up behind the ear its height says little: hair is thin near its rim.
-    within = np.asarray(cKDTree(base[rim] + shift[rim]).query(base)[0])
-    within[rim] = 0.0
-    lumps = 1 + 0.12 * np.sin(base @ [0.19, 0.07, 0.13]) * np.sin(base @ [-0.11, 0.23, 0.17])
-    push = (1.5 + 11.5 * np.clip(within / 45, 0, 1) ** 0.7) * lumps
-    streaks = 1 + 0.18 * np.sin(base @ [0.9, 0.2, 0.35])
-    surface = flat(person.hair, len(base))
-    surface[:, :3] *= streaks[:, None]
-    return Piece("hair", triangles, push, surface, 420, shift_mm=shift, turned_in_above_mm=0.0)
+@dataclass(frozen=True)
+class _Mesh:
+    """Hair as it grows: points and tone per vertex, where strands are, triangles.
+
+    The last vertices face ``inwards`` (k, 3), whatever their triangles say.
+    """
+
+    points_mm: Floats
+    tone: Floats
+    strand: Floats
+    triangles: Indices
+    inwards: Floats
 
 
-def _snap(base: Floats, rim: Indices) -> Floats:
-    """Return shifts (n, 3) that bring the rim of the hair on the hairline: no jags."""
-    shift = np.zeros_like(base)
-    for _ in range(4):  # the shortest way there, sideways where the line is steep
-        y, z = (base[rim] + shift[rim]).T[1:]
-        above = y - np.interp(z, *_HAIRLINE)
-        slope = (np.interp(z + 1, *_HAIRLINE) - np.interp(z - 1, *_HAIRLINE)) / 2
-        step = -above / (1 + slope * slope)
-        shift[rim, 1] += step
-        shift[rim, 2] -= slope * step
-    length = np.linalg.norm(shift, axis=1, keepdims=True)
-    return np.asarray(shift * np.minimum(1.0, 25.0 / np.maximum(length, 1e-9)))
+def hair(person: Person, shape: Floats) -> list[FacePart]:
+    """Return a person's hair; ``shape`` is the base mesh in the person's build."""
+    rng = np.random.Generator(np.random.PCG64(zlib.crc32(person.body.encode())))
+    style = STYLES[person.hair_style]
+    locks = comb(style, shape, rng)
+    mesh = _on_scalp(locks)
+    if style.hangs:
+        mesh = _hung(mesh, locks, shape, rng, style=style)
+    normals = vertex_normals(mesh.points_mm, mesh.triangles)
+    # The last row on the scalp is under the skin, and what one sees of it is lit as the tips.
+    end = 1 + locks.tone.size
+    normals[end - COLUMNS : end] = normals[end - 2 * COLUMNS : end - COLUMNS]
+    normals[len(normals) - len(mesh.inwards) :] = mesh.inwards
+    surface = np.column_stack([np.outer(mesh.tone, person.hair), mesh.strand])
+    used, compact = np.unique(mesh.triangles, return_inverse=True)
+    return [FacePart(mesh.points_mm[used], normals[used], surface[used], compact.reshape(-1, 3))]
 
 
-def long_hair(person: Person, base: Floats) -> Piece:
-    """Return hair down to the collar, cut straight: longer strands would pierce the shoulders."""
-    triangles, centre = group_triangles("helper-hair"), quad_centres("helper-hair")
-    frames_face = (centre[:, 2] < 62) | (centre[:, 1] > 800)
-    kept = triangles[(base[triangles, 1].max(axis=1) > END_MM) & frames_face]
-    surface = flat(person.hair, len(base))
-    surface[:, :3] *= (1 + 0.2 * np.sin(base @ [0.5, 0.0, 0.5]))[:, None]
-    push = np.full(len(base), 2.0)
-    return Piece("hair", kept, push, surface, 300, shift_mm=_cut(base, kept), is_two_sided=True)
+def _on_scalp(locks: Locks) -> _Mesh:
+    """Return the locks as a mesh, closed over the crown."""
+    crown = locks.points_mm[0].mean(axis=0, keepdims=True)
+    crown += 0.25 * np.ptp(locks.points_mm[0, :, 1]) * locks.outwards[0].mean(axis=0)
+    rows = len(locks.points_mm)
+    return _Mesh(
+        np.concatenate([crown, locks.points_mm.reshape(-1, 3)]),
+        np.concatenate([[1.0], locks.tone.ravel()]),
+        np.concatenate([[np.mean(SHEEN)], np.tile(SHEEN, rows * LOCKS)]),
+        np.concatenate([_cap(COLUMNS), 1 + ring(rows, COLUMNS)]),
+        np.zeros((0, 3)),
+    )
 
 
-def _cut(base: Floats, triangles: Indices) -> Floats:
-    """Return shifts (n, 3) that take what hangs lower than END_MM up its strand to there."""
-    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    edges = np.concatenate([edges, edges[:, ::-1]])
-    low, high = edges[(base[edges[:, 0], 1] < END_MM) & (base[edges[:, 1], 1] >= END_MM)].T
-    way = base[high] - base[low]
-    steepest_last = np.argsort(way[:, 1] / np.linalg.norm(way, axis=1), kind="stable")
-    share = (END_MM - base[low, 1]) / way[:, 1]
-    shift = np.zeros_like(base)
-    shift[low[steepest_last]] = (share[:, None] * way)[steepest_last]
-    return shift
+def _hung(
+    mesh: _Mesh, locks: Locks, shape: Floats, rng: np.random.Generator, *, style: Style
+) -> _Mesh:
+    """Return hair of which what lies beside and behind the face hangs down over what it hides."""
+    hung = np.flatnonzero(is_hanging(locks.turn))
+    hung = np.roll(hung, -int(np.argmax(np.diff(hung))) - 1)  # from one temple to the other
+    start = 1 + HUNG_ROW * COLUMNS + hung
+    is_ridge = hung % 2 == 1
+    long = curtain(
+        mesh.points_mm[start],
+        shape,
+        rng,
+        is_ridge=is_ridge,
+        off_mm=style.side_mm,
+        tips_mm=style.tips_mm,
+    )
+    number = np.concatenate([start, len(mesh.tone) + np.arange(2 * long.tone.size)])
+    # Locks beside the face run forwards on the scalp: without them there is a gap to what hangs.
+    hidden = np.isin((mesh.triangles - 1) % COLUMNS, hung[_BESIDE:-_BESIDE]).all(axis=1)
+    hidden &= (mesh.triangles > (HUNG_ROW + 1) * COLUMNS).any(axis=1)
+    both = [long.points_mm.reshape(-1, 3)] * 2
+    return _Mesh(
+        np.concatenate([mesh.points_mm, *both]),
+        np.concatenate([mesh.tone, long.tone.ravel(), inside_tone(long.tone.ravel())]),
+        np.concatenate([mesh.strand, np.tile(np.array(SHEEN)[1 * is_ridge], 2 * len(long.tone))]),
+        np.concatenate([mesh.triangles[~hidden], number[long.triangles]]),
+        long.inwards.reshape(-1, 3),
+    )
+
+
+def ring(rows: int, columns: int) -> Indices:
+    """Return the triangles of rows of vertices around a closed ring, facing outwards."""
+    row, column = np.divmod(np.arange((rows - 1) * columns), columns)
+    a, b = row * columns + column, row * columns + (column + 1) % columns
+    quads = np.stack([a, a + columns, b + columns, b], axis=1)
+    return np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+
+
+def _cap(columns: int) -> Indices:
+    """Return the fan from the first vertex to the ring that follows it."""
+    column = np.arange(columns)
+    return np.stack([np.zeros_like(column), 1 + column, 1 + (column + 1) % columns], axis=1)

@@ -27,8 +27,6 @@ class Piece:
     surface: Floats
     target: int
     importance: Floats | None = None
-    shift_mm: Floats | None = None
-    is_two_sided: bool = False
     turned_in_above_mm: float | None = None
 
 
