@@ -18,9 +18,9 @@ import numpy.typing as npt
 
 from renderer.clip import ClipSpec
 from renderer.encoding.decode import as_stored, decode
-from renderer.encoding.eye_boxes import frame_rectangles
 from renderer.encoding.fidelity import psnr_db, ssim
 from renderer.encoding.flip import WHY_NOT, flip_map, is_installed
+from renderer.eye_rectangles import frame_rectangles
 
 Pixels = npt.NDArray[np.uint8]
 EyePair = tuple[Pixels, Pixels]

@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from renderer.camera import eye_centre_mm, views
 from renderer.clip import ClipSpec
-from renderer.encoding.fidelity import Rectangle, eye_rectangles
 from renderer.encoding.regions import Box, Stretch
+from renderer.eye_rectangles import Rectangle, frame_rectangles
 from renderer.head.lid_pose import lid_poses
 from renderer.head.lid_rims import rim_curves
 from renderer.view import View
@@ -29,11 +29,6 @@ STRETCHES: Final = 15  # 8 degrees each of an orbit of 120
 MARGIN_MM: Final = 0.5  # around the opening: its rims' shade is part of the eye
 _RIM_SAMPLES: Final = 129  # 10 pixels apart at macroscopic: no macroblock is missed
 _ACROSS: Final = np.linspace(0.0, 1.0, 49)  # from the lower rim to the upper one
-
-
-def frame_rectangles(spec: ClipSpec, number: int) -> tuple[Rectangle, Rectangle]:
-    """Return the rectangles of both eyes in one frame of a clip as (rows, columns)."""
-    return eye_rectangles(spec, spec.azimuth_deg(number), distance_px=spec.distance_px(number))
 
 
 def eye_boxes(spec: ClipSpec, *, eye_steps: float, lid_steps: float) -> list[Stretch]:

@@ -1,4 +1,4 @@
-"""How much of the stimulus survives encoding: PSNR and SSIM inside the eyes' rectangles."""
+"""How much of a picture survives: PSNR and SSIM. Pure numpy and scipy."""
 
 from __future__ import annotations
 
@@ -9,40 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter
 
-from renderer.camera import IRIS_DIAMETER_MM, eye_centre_mm, views
-from renderer.clip import ClipSpec
-
 Pixels = npt.NDArray[np.uint8]
-Rectangle = tuple[slice, slice]
 
-APERTURE_IRISES: Final = (2.6, 1.1)  # the open eye's width and height in iris diameters
 PEAK: Final = 255.0
 IDENTICAL_DB: Final = 99.0  # what a PSNR without any error is written as
-
-
-def eye_rectangles(
-    spec: ClipSpec, azimuth_deg: float, *, distance_px: float | None = None
-) -> tuple[Rectangle, Rectangle]:
-    """Return each eye's rectangle on the picture as (rows, columns), left and right eye."""
-    found: dict[int, Rectangle] = {}
-    for view in views(spec, azimuth_deg, distance_px=distance_px):
-        x0, y0, width, height = view.rectangle
-        for eye in view.eyes:
-            clip = view.projection @ view.view_matrix @ np.append(eye_centre_mm(eye), 1.0)
-            centre_x = x0 + (clip[0] / clip[3] + 1) / 2 * width
-            centre_y = spec.height - (y0 + (clip[1] / clip[3] + 1) / 2 * height)
-            px_per_mm = view.projection[1, 1] / clip[3] * height / 2
-            half_w, half_h = (0.5 * n * IRIS_DIAMETER_MM * px_per_mm for n in APERTURE_IRISES)
-            found[eye] = (
-                _span(centre_y, half_h, 0, spec.height),
-                _span(centre_x, half_w, x0, x0 + width),
-            )
-    return found[0], found[1]
-
-
-def _span(centre: float, half: float, low: int, high: int) -> slice:
-    start = min(max(int(centre - half), low), high - 8)
-    return slice(start, max(min(math.ceil(centre + half), high), start + 8))
 
 
 def psnr_db(reference: Pixels, test: Pixels) -> float:

@@ -14,7 +14,7 @@ from typing import Final
 from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import STANDARD_LODS, Detail
-from renderer.encoding.fidelity import Rectangle, eye_rectangles
+from renderer.eye_rectangles import Rectangle, eye_rectangles
 from renderer.frame.frame import FrameRenderer
 from renderer.frame.picture import Pixels
 from renderer.lod.derivation import LodError, derive_policy

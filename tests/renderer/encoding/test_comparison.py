@@ -10,7 +10,7 @@ import pytest
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.encoding.comparison import Comparison, flip_numbers, signal_numbers
-from renderer.encoding.eye_boxes import frame_rectangles
+from renderer.eye_rectangles import frame_rectangles
 
 LOW, ULTRA = Detail.uniform("low"), Detail.uniform("ultra")
 SPEC = ClipSpec(left=LOW, right=ULTRA, width=256, height=144, duration_s=0.2)

@@ -11,8 +11,9 @@ import pytest
 from renderer.clip import ClipSpec
 from renderer.clip_values import DISTANCES
 from renderer.detail import Detail
-from renderer.encoding.eye_boxes import STRETCHES, eye_boxes, frame_rectangles
+from renderer.encoding.eye_boxes import STRETCHES, eye_boxes
 from renderer.encoding.regions import Box, Stretch
+from renderer.eye_rectangles import frame_rectangles
 
 LOW = Detail.uniform("low")
 STEPS, LID_STEPS = 20.0, 3.0

@@ -16,7 +16,7 @@ import pytest
 from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, TABLE, Detail
-from renderer.encoding.fidelity import eye_rectangles
+from renderer.eye_rectangles import eye_rectangles
 from renderer.frame.frame import Frame, FrameRenderer
 from renderer.gl.context import identify
 from renderer.production.batch import render_clip

@@ -13,9 +13,9 @@ import pytest
 from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.encoding.fidelity import eye_rectangles
 from renderer.eye.geometry import eye_mesh
 from renderer.eye.morph import laid_on
+from renderer.eye_rectangles import eye_rectangles
 from renderer.frame.frame import FrameRenderer
 from renderer.lod.choice import LodPolicy, LodStep
 from renderer.lod.path import places_of_clip

@@ -13,7 +13,7 @@ import pytest
 
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
-from renderer.encoding.fidelity import eye_rectangles
+from renderer.eye_rectangles import eye_rectangles
 from renderer.frame.frame import FrameRenderer
 from renderer.lod.derivation import LodError
 from renderer.lod.error import Look, Sight, measure_errors, render_rectangles
