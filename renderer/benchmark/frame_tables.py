@@ -93,7 +93,7 @@ def _aims_on_a_gpu(found: list[Cost]) -> list[Table]:
                 f"{aim.frames_per_s:.0f}",
                 *_whole(row, found),
                 f"{row.row_ms:.1f}",
-                f"{row.reads}",
+                f"{row.reads} ({row.wait_ms:.1f} ms)" if row.reads else "0",
                 "met" if is_met else "missed",
             )
         )

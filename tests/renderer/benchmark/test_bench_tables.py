@@ -108,6 +108,12 @@ def test_the_aims_are_told_on_a_gpu(on_a_gpu: Bench) -> None:
     assert group == ("60", "8.0 ± 0.5", "120", "1.5", "100", "GPU", "8.3", "0", "met")
 
 
+def test_what_an_aim_waits_for_is_told(on_a_gpu: Bench) -> None:
+    waiting = [replace(row, reads=2, wait_ms=5.0) for row in on_a_gpu.of_part("aims")]
+    eyes, _ = cells(replace(on_a_gpu, rows=waiting), "Aims on a GPU").values()
+    assert eyes[5:] == ("read-backs", "10.4", "2 (5.0 ms)", "missed")
+
+
 def test_without_a_gpu_its_aims_are_judged_by_the_processor_alone(known: Bench) -> None:
     eyes, group = cells(known, "What the aims for a GPU ask of this processor").values()
     assert eyes == ("120", "10.0", "102", "0", "100", "out of reach")
