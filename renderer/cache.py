@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from renderer.manifest import write_atomically
+from renderer.atomic_file import write_atomically
 from renderer.sources import module_version
 
 Array = npt.NDArray[np.generic]

@@ -6,12 +6,11 @@ Pure apart from reading and writing its own file; it knows neither GL nor study.
 from __future__ import annotations
 
 import json
-import os
-import tempfile
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+from renderer.atomic_file import write_atomically
 from renderer.clip import ClipSpec
 from renderer.sources import code_version
 
@@ -130,19 +129,3 @@ def write_manifest(manifest: Manifest, folder: Path) -> None:
     """Write ``manifest.json`` atomically: a reader sees the old file or the new one, whole."""
     data = {"schema": SCHEMA, "clips": [asdict(record) for record in manifest.clips.values()]}
     write_atomically(folder / MANIFEST_NAME, json.dumps(data, indent=1).encode())
-
-
-def write_atomically(path: Path, data: bytes) -> None:
-    """Write ``data`` beside ``path``, flush it to disk and rename it into place."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        Path(temporary).chmod(0o644)
-        Path(temporary).replace(path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise

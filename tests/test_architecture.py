@@ -18,6 +18,7 @@ PURE_RENDERER = (
     *(
         f"renderer.{name}"
         for name in (
+            "atomic_file",
             "camera",
             "clip",
             "clip_checks",

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
-from renderer.manifest import write_atomically
+from renderer.atomic_file import write_atomically
 
 PARTS: Final = (
     *("lods", "effects", "samples", "cubes", "crowd", "aims"),

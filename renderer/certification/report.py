@@ -7,9 +7,9 @@ import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from renderer.atomic_file import write_atomically
 from renderer.certification.certificate import Certificate, InsideResult, PictureResult
 from renderer.certification.panels import write_panel
-from renderer.manifest import write_atomically
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 75rem; margin: 2rem auto; padding: 0 1rem; }

@@ -14,6 +14,7 @@ from typing import Final
 import numpy as np
 import pygltflib as gltf
 
+from renderer.atomic_file import write_atomically
 from renderer.camera import eye_centre_mm, gaze_deg
 from renderer.clip import ClipSpec
 from renderer.detail import STANDARD_LODS, Detail
@@ -28,7 +29,6 @@ from renderer.exchange.lod_meshes import (
     sclera_tangents,
 )
 from renderer.exchange.meshes import Floats, Mesh
-from renderer.manifest import write_atomically
 from renderer.sources import code_version
 
 METRES: Final = 1e-3  # per mm

@@ -12,8 +12,8 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from renderer.atomic_file import write_atomically
 from renderer.colour import linear_to_srgb
-from renderer.manifest import write_atomically
 
 Floats = npt.NDArray[np.float64]
 Triangles = npt.NDArray[np.integer]

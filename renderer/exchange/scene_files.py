@@ -12,6 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from renderer.atomic_file import write_atomically
 from renderer.detail import Detail
 from renderer.exchange.camera_file import cameras
 from renderer.exchange.drawn import crowd_meshes, hair_meshes, head_meshes
@@ -27,7 +28,6 @@ from renderer.frame.frame import FrameRenderer
 from renderer.frame.picture import EXPOSURE
 from renderer.gl.context import identify
 from renderer.iris.source import iris_of
-from renderer.manifest import write_atomically
 from renderer.sources import code_version
 
 INDEX: Final = "scene.json"

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Final
 
+from renderer.atomic_file import write_atomically
 from renderer.gallery.drawing import draw_strip, encode
 from renderer.gallery.shots import Shots
 from renderer.gallery.strips import Strip
-from renderer.manifest import write_atomically
 from renderer.sources import code_version
 
 INDEX: Final = "gallery.json"

@@ -13,9 +13,9 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, Final
 
+from renderer.atomic_file import write_atomically
 from renderer.detail import STANDARD_LODS, Detail
 from renderer.lod.choice import LodPolicy, LodStep
-from renderer.manifest import write_atomically
 
 SCHEMA: Final = 1
 DEFAULT_NAME: Final = "policy.json"  # beside this module

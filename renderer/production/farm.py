@@ -21,8 +21,9 @@ from concurrent.futures import (
 from pathlib import Path
 from typing import Any, Final
 
+from renderer.atomic_file import write_atomically
 from renderer.clip import PATHS, ClipSpec
-from renderer.manifest import ClipRecord, read_manifest, write_atomically
+from renderer.manifest import ClipRecord, read_manifest
 from renderer.production.folder import keep_record, remove_parts
 from renderer.production.orders import WANTED, VersionMismatchError, fill_order, hash_name
 from renderer.sources import code_version

@@ -16,9 +16,9 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from renderer.atomic_file import write_atomically
 from renderer.cache import cache_folder
 from renderer.clip import PATHS, ClipSpec
-from renderer.manifest import write_atomically
 from renderer.sources import code_version
 
 if TYPE_CHECKING:

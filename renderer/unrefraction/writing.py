@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from renderer.atomic_file import write_atomically
 from renderer.colour import linear_to_srgb
 from renderer.iris.file import packed
 from renderer.iris.maps import HEIGHT_RANGE_MM, MAP_EDGE_MM
-from renderer.manifest import write_atomically
 from renderer.textures.sizes import normals_from_height
 from renderer.unrefraction.recovery import Recovery
 

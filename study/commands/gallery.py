@@ -90,8 +90,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _write_page(strips: Sequence[Strip], folder: Path, kind: str) -> Path:
+    from renderer.atomic_file import write_atomically
     from renderer.gallery.page import PAGE, measured_strands, page_of
-    from renderer.manifest import write_atomically
 
     names = {strip.name: f"{strip.name}.{kind}" for strip in strips}
     files = {name: file for name, file in names.items() if (folder / file).is_file()}

@@ -17,7 +17,7 @@ import pandas as pd
 from pandas.api.extensions import ExtensionDtype
 
 from analysis import Column, columns_of
-from renderer.manifest import write_atomically
+from renderer.atomic_file import write_atomically
 from study.data.codebook import codebook_of, own_columns
 from study.data.collection import Collected, collect
 from study.data.database import Database

@@ -64,6 +64,17 @@ def test_a_change_reaches_who_imports_it(tree: Path, changed: str, stale: set[st
     assert {name for name, is_stale in moved.items() if is_stale} == stale
 
 
+def test_a_bake_does_not_hang_on_what_a_clip_may_be() -> None:
+    """Everything that keeps bakes imports the cache: what that imports makes every bake stale."""
+    reached, waiting = set[str](), ["cache"]
+    while waiting:
+        name = waiting.pop()
+        if name not in reached:
+            reached.add(name)
+            waiting += [path.stem for path in sources._imported(sources.ROOT / f"{name}.py")]
+    assert reached == {"cache", "sources", "atomic_file"}
+
+
 def test_strangers_depend_on_everything(tree: Path) -> None:
     assert sources.module_version("tests.renderer.test_sources") == sources.code_version()
     assert tree.is_dir()
