@@ -26,6 +26,7 @@ class HangingArms:
 
     def __init__(self, skeletons: Skeletons, elbows_deg: Floats) -> None:
         self._elbows_deg = elbows_deg
+        self._out = np.repeat(_SHARE * _OUT, len(elbows_deg), axis=2)
         self._upper, self._lower = (
             Pointers(np.stack([skeletons.along(f"{part}_{side}") for side in "lr"]))
             for part in ("upperarm", "lowerarm")
@@ -39,8 +40,7 @@ class HangingArms:
         bent = swing_deg + self._elbows_deg + 0.6 * np.maximum(swing_deg, 0.0)
         angle = np.radians([swing_deg, bent])
         down, ahead = -_SHARE * np.cos(angle), _SHARE * np.sin(angle)
-        out = np.broadcast_to(_SHARE * _OUT, angle.shape)
-        upper_along, lower_along = np.stack([out, down, ahead], axis=-1)
+        upper_along, lower_along = np.stack([self._out, down, ahead], axis=-1)
         upper = self._upper.towards(upper_along)
         return upper, self._lower.towards(applied_back(upper, lower_along))
 

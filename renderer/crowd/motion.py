@@ -19,6 +19,10 @@ from renderer.crowd.turns import STILL, Floats, Hinges
 _TURNS: Final = 2  # of a joint, one after the other
 _CHEST_LEAN_DEG: Final = 1.2  # aside, with a waving arm
 _LEANING: Final = Hinges([0.0, 0.0, 1.0])
+_UPPER_ARMS: Final = ("upperarm_l", "upperarm_r")
+_LOWER_ARMS: Final = ("lowerarm_l", "lowerarm_r")
+_TORSO: Final = ("pelvis", "spine_01", "spine_03", "clavicle_r")
+_RAISED: Final = ("spine_03", "upperarm_r", "lowerarm_r", "hand_r")
 _NO_TURN: Final = Turn((1.0, 0.0, 0.0), {})
 
 
@@ -39,12 +43,11 @@ class Motion:
         ``seeds`` tell apart those who stand about; ``bows_deg`` (f,) is how far heads are bowed.
         """
         chosen = [ACTIONS[action] for action in actions]
-        rows = range(len(chosen))
-        self._striding = [row for row in rows if chosen[row].is_striding]
-        self._idling = [row for row in rows if not chosen[row].is_striding]
-        self._waving = [row for row in rows if chosen[row].is_waving]
+        is_striding = np.array([action.is_striding for action in chosen])
+        self._striding, self._idling = np.flatnonzero(is_striding), np.flatnonzero(~is_striding)
+        self._waving = np.flatnonzero([action.is_waving for action in chosen])
         self._strides_s = strides_s[self._striding]
-        self._seeds = tuple(seeds[row] for row in self._idling)
+        self._seeds = tuple(seeds[row] for row in self._idling.tolist())
         joints = list(dict.fromkeys(bone for action in chosen for bone in action.turns))
         self._hinges = Hinges(_axes(chosen, joints))
         staying = np.stack([np.ones_like(bows_deg), bows_deg, *_level_legs_deg(skeletons)], axis=1)
@@ -53,10 +56,9 @@ class Motion:
         self._arms = HangingArms(skeletons, np.array([action.elbow_deg for action in chosen]))
         self._waving_arms = WavingArms(skeletons.pick(self._waving))
         self._at_rest = np.tile(STILL, (len(skeletons.names), len(chosen), 1, 1))
-        self._numbers = {bone: number for number, bone in enumerate(skeletons.names)}
-        self._joints = [self._numbers[bone] for bone in joints]
-        self._upper, self._lower = (
-            [self._numbers[f"{part}_{side}"] for side in "lr"] for part in ("upperarm", "lowerarm")
+        self._joints, self._upper, self._lower, self._torso, self._raised = (
+            np.array([skeletons.index(bone) for bone in bones])
+            for bones in (joints, _UPPER_ARMS, _LOWER_ARMS, _TORSO, _RAISED)
         )
 
     def turns(self, time_s: float) -> Floats:
@@ -68,31 +70,27 @@ class Motion:
         turns = self._at_rest.copy()
         turns[self._joints] = first @ second
         turns[self._upper], turns[self._lower] = self._arms.turns(degrees[-2:])
-        if self._waving:
+        if self._waving.size:
             self._raise_arms(turns, waving(time_s))
         return turns
 
     def _signals(self, time_s: float) -> Floats:
         """Return MOVING (f, s) at a time: 0 where an action does not know them."""
         signals = np.zeros((len(self._striding) + len(self._idling), len(MOVING)))
-        if self._striding:
+        if self._striding.size:
             signals[self._striding, : len(STRIDING)] = striding(time_s, self._strides_s)
-        if self._idling:
+        if self._idling.size:
             signals[self._idling, len(STRIDING) :] = idling(time_s, self._seeds)
         return signals
 
     def _raise_arms(self, turns: Floats, beat: float) -> None:
         """Have the right arms of those who wave do so, and their chests lean with them."""
-        number, rows = self._numbers, self._waving
-        shoulders = STILL
-        for bone in ("pelvis", "spine_01", "spine_03", "clavicle_r"):
-            shoulders = shoulders @ turns[number[bone], rows]
-        upper, lower, hand = self._waving_arms.turns(beat, shoulders)
-        turns[number["upperarm_r"], rows] = upper
-        turns[number["lowerarm_r"], rows] = lower
-        turns[number["hand_r"], rows] = hand
-        # After the arm, which it carries along.
-        turns[number["spine_03"], rows] @= _LEANING.turns(np.radians(_CHEST_LEAN_DEG * beat))
+        pelvis, spine, chest, collar = turns[self._torso[:, None], self._waving]
+        shoulders = pelvis @ spine @ chest @ collar
+        # The chest leans after the arm, which it carries along.
+        leaning = chest @ _LEANING.turns(np.radians(_CHEST_LEAN_DEG * beat))
+        arm = self._waving_arms.turns(beat, shoulders)
+        turns[self._raised[:, None], self._waving] = [leaning, *arm]
 
 
 def _turn(action: Action, bone: str, place: int) -> Turn:

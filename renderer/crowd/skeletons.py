@@ -12,9 +12,12 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from renderer.body.rig import Rig
 from renderer.crowd.turns import Floats, applied
+
+Numbers = npt.NDArray[np.int64]
 
 _FROM_BODY: Final = ("thigh_l", "thigh_r")
 
@@ -41,10 +44,9 @@ class Skeletons:
             np.stack([rig.tails_mm for rig in rigs], axis=1),
         )
 
-    def pick(self, rows: Sequence[int]) -> Skeletons:
+    def pick(self, rows: Numbers) -> Skeletons:
         """Return some of the figures."""
-        chosen = list(rows)
-        return replace(self, heads_mm=self.heads_mm[:, chosen], tails_mm=self.tails_mm[:, chosen])
+        return replace(self, heads_mm=self.heads_mm[:, rows], tails_mm=self.tails_mm[:, rows])
 
     def index(self, bone: str) -> int:
         """Return a bone's number."""
@@ -77,18 +79,18 @@ class Skeletons:
         return frames, (self._ancestry @ steps.reshape(len(steps), -1)).reshape(steps.shape)
 
     @functools.cached_property
-    def _levels(self) -> list[tuple[list[int], list[int]]]:
+    def _levels(self) -> list[tuple[Numbers, Numbers]]:
         """Bones that are turned together, and those that their turns are relative to."""
         depths: list[int] = []
         for name, parent in zip(self.names, self.parents, strict=True):
             depths.append(0 if parent < 0 or name in _FROM_BODY else depths[parent] + 1)
-        levels = [[b for b, own in enumerate(depths) if own == d] for d in range(max(depths) + 1)]
-        return [(bones, [self.parents[bone] for bone in bones]) for bones in levels]
+        levels = [np.flatnonzero(np.equal(depths, depth)) for depth in range(max(depths) + 1)]
+        return [(bones, np.array(self.parents)[bones]) for bones in levels]
 
     @functools.cached_property
-    def _joined_to(self) -> list[int]:
+    def _joined_to(self) -> Numbers:
         """Every bone's parent; the root has itself."""
-        return [max(parent, 0) for parent in self.parents]
+        return np.maximum(self.parents, 0)
 
     @functools.cached_property
     def _ancestry(self) -> Floats:
