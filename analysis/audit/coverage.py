@@ -47,8 +47,8 @@ class Coverage:
             rare = [f"{lod} at distance={d}" for (d, lod), n in self.seen_by.items() if n == least]
             named = listed(rare) if len(rare) <= 3 else f"{len(rare)} of them"
             text = [
-                f"Each of these combinations was rated by {least} to {counted(most)} of "
-                f"{self.people}; by {least} {named}."
+                f"Each of these combinations was rated by {least} to {most} of "
+                f"{counted(self.people)}; {named} by {least} only."
             ]
         if len(self.directions) > 1:
             ways = [f"{way} for {counted(n)}" for way, n in self.directions.items()]

@@ -24,7 +24,7 @@ from analysis.decision.effects import EffectVerdict
 from analysis.decision.verdicts import Verdict
 from analysis.screening.sensitivity import COLUMNS
 from analysis.tables.records import records
-from analysis.words.wording import counted, listed
+from analysis.words.wording import counted, listed, place
 
 STABILITY: Final = "Does a verdict hang on one person?"
 NO_VERDICT: Final = "No verdict could hang on anyone yet."
@@ -74,8 +74,9 @@ def stability_sentence(material: Material) -> str:
     moved = alone[alone["is_moved"]]
     if moved.empty:
         return f"Leaving out any one of the {count} people changes no verdict."
+    lods = set(alone["lod"])
     named = [
-        f"{lod} at {distance} ({own['people'].nunique()} of {count})"
+        f"{lod} at {place(str(distance), lods)} ({own['people'].nunique()} of {count})"
         for (distance, lod), own in moved.groupby(["distance", "lod"], sort=False)
     ]
     most = f"{listed(named[:4])}{' and others' if len(named) > 4 else ''}"

@@ -21,7 +21,7 @@ def answer(decision: Decision, costs: Costs | None = None) -> str:
     last = passed[0]
     parts = [f"{last.lod} is enough: {_bounds(last)}"]
     if (share := last.share_cheapest) < 0.995:
-        parts.append(f"it is the cheapest that is enough in {percent(share)} of the draws")
+        parts.append(f"with a probability of {percent(share)} it is the cheapest that is")
     if costs is not None:
         saved = lod_saving(costs, decision.distance, last.lod, best=last.best)
         parts.append(price(saved) if saved else "what it saves was not measured here")

@@ -17,7 +17,7 @@ from analysis.decision.verdicts import EQUIVALENT, NOT_SHOWN, Verdict
 from analysis.descriptive.means import answered, differences_from_best
 from analysis.inference.inferring import Inference
 from analysis.tables.reading import Tables
-from analysis.words.wording import listed, number, percent
+from analysis.words.wording import listed, number, percent, place
 
 # ITU-R BT.500-15 (2023) asks for at least 15 observers.
 _ENOUGH_PEOPLE: Final = 15
@@ -119,8 +119,10 @@ def _margins(margins: Margins, has_equals: bool) -> list[str]:
 def _named(verdicts: Iterable[Verdict | EffectVerdict]) -> str:
     """Name LoDs by distance: "high at macroscopic; medium and low at far"."""
     by_distance: dict[str, list[str]] = {}
-    for verdict in verdicts:
-        by_distance.setdefault(verdict.distance, []).append(verdict.lod)
+    own = list(verdicts)
+    lods = {verdict.lod for verdict in own}
+    for verdict in own:
+        by_distance.setdefault(place(verdict.distance, lods), []).append(verdict.lod)
     return "; ".join(f"{listed(lods)} at {where}" for where, lods in by_distance.items())
 
 

@@ -77,8 +77,8 @@ def report_page(
     studies = tables.ratings[["study", "study_version"]].dropna(how="all").drop_duplicates()
     return environment.get_template(REPORT).render(
         summary=summary,
-        study=", ".join(" ".join(row.dropna()) for _, row in studies.iterrows()),
-        source=Path(tables.source).name,
+        study=", ".join(", version ".join(row.dropna()) for _, row in studies.iterrows()),
+        source=_source(tables),
         charts=_by_part(charts),
         margins=own.margins.origins,
         size_notes=own.curves.notes,
@@ -97,6 +97,12 @@ def report_page(
         methods=methods(tables, parts.costs),
         label=SIMULATED,
     )
+
+
+def _source(tables: Tables) -> str:
+    """Return where the answers come from, unless that is the study that is named already."""
+    name = Path(tables.source).name
+    return "" if name in set(tables.ratings["study"].dropna()) else name
 
 
 def _filled(*tables: ReportTable) -> list[ReportTable]:

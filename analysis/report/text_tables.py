@@ -7,7 +7,7 @@ from typing import Final
 import pandas as pd
 
 from analysis.report.tables import ReportTable
-from analysis.words.wording import percent
+from analysis.words.wording import counted, percent
 from analysis.writing.code_book import CODES
 from analysis.writing.coding import ALL, BY_HAND
 
@@ -48,10 +48,12 @@ def text_sentences(remarks: pd.DataFrame) -> list[str]:
         return ["Nobody wrote anything, or nobody was asked to."]
     by_hand = int((remarks["coded_by"] == BY_HAND).sum())
     without = int((remarks["codes"] == "").sum())
+    nothing = f"{without} of them say" if without else "None says"
     return [
-        f"{len(remarks)} remarks by {remarks['participant'].nunique()} people, coded by words of "
-        f"the code book in English and Arabic; {by_hand} of them by hand. {without} mention "
-        "nothing that the book knows.",
+        f"{counted(len(remarks), 'remark', 'remarks')} by "
+        f"{counted(remarks['participant'].nunique(), 'person', 'people')}, coded by words of the "
+        f"code book in English and Arabic, {by_hand or 'none'} of them by hand. {nothing} nothing "
+        "that the book knows.",
         "remark-codes.csv holds every remark with its codes: correct its column codes and give it "
         "back (ocularist analyse --codes) to replace the rules by a reader's judgement.",
     ]

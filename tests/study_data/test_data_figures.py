@@ -324,7 +324,9 @@ def test_costs_of_the_data_folder_are_shown_and_a_faulty_file_is_told(
 
     def found(_tables: Tables, _folder: str, *, bench: Path | None) -> SimpleNamespace:
         given.append(bench)
-        names = dict.fromkeys(("verdicts", "findings", "limits", "design", "quality", "files"), ())
+        names = dict.fromkeys(
+            ("verdicts", "findings", "limits", "design", "quality", "chart_notes", "files"), ()
+        )
         return SimpleNamespace(people=0, ratings=0, **names)
 
     monkeypatch.setattr("study.figures.analyse", found)

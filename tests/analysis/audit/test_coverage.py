@@ -15,7 +15,8 @@ def test_cells_that_one_person_saw_are_linked_also_over_distances() -> None:
     assert found.seen_by == {NEAR: 2, FAR: 2, HIGH: 1}
     assert found.limits() == []
     assert found.facts() == [
-        "Each of these combinations was rated by 1 to 2 people of 3; by 1 high at distance=near."
+        "Each of these combinations was rated by 1 to 2 of 3 people; high at distance=near by 1 "
+        "only."
     ]
 
 
