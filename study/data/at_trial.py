@@ -6,17 +6,17 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import bindparam, insert, select, update
+from sqlalchemy import bindparam, select, update
 
+from study.data.entries import IS_KNOWN, inserting
 from study.data.errands import Errand
 from study.data.events import checked_key, plain
 from study.data.prepared import Prepared, table_of
 from study.data.refusals import NotReachedError
-from study.data.schema import EventRow, SessionRow, TrialRow
+from study.data.schema import SessionRow, TrialRow
 from study.data.senders import touching
 
 _T: Final = table_of(TrialRow)
-_E: Final = table_of(EventRow)
 _S: Final = table_of(SessionRow)
 _EARLIER: Final = _T.alias("earlier")
 # One way to the database for four questions: the trial, whether one before it is still open,
@@ -32,10 +32,7 @@ _STATE: Final = Prepared(
         )
         .exists()
         .label("is_ahead"),
-        select(_E.c.id)
-        .where(_E.c.participant_id == bindparam("who"), _E.c.key == bindparam("entry"))
-        .exists()
-        .label("is_known"),
+        IS_KNOWN,
         _S.c.id.label("sitting_id"),
         _S.c.last_seen_at.label("seen_at"),
     )
@@ -43,19 +40,6 @@ _STATE: Final = Prepared(
     .where(_T.c.participant_id == bindparam("who"), _T.c.position == bindparam("position"))
     .order_by(_S.c.number.desc())
     .limit(1)
-)
-_ADD: Final = Prepared(
-    insert(_E)
-    .values(
-        participant_id=bindparam("who"),
-        session_id=bindparam("sitting"),
-        trial_id=bindparam("trial"),
-        key=bindparam("entry"),
-        kind=bindparam("what"),
-        payload=bindparam("told"),
-        created_at=bindparam("now"),
-    )
-    .inline()
 )
 _START: Final = Prepared(
     update(_T).where(_T.c.id == bindparam("trial")).values(started_at=bindparam("now"))
@@ -102,17 +86,8 @@ def adding(
     sitting = yield from touching(who, trial, now)
     if trial.started_at is None:
         yield _START, {"trial": trial.id, "now": now}
-    yield (
-        _ADD,
-        {
-            "who": who.id,
-            "sitting": sitting,
-            "trial": trial.id,
-            "entry": key,
-            "what": kind,
-            "told": told,
-            "now": now,
-        },
+    yield from inserting(
+        who, sitting=sitting, key=key, kind=kind, told=told, now=now, trial=trial.id
     )
     return sitting
 

@@ -6,15 +6,15 @@ from collections.abc import Mapping
 from datetime import datetime
 from typing import Any, Final, Literal
 
-from sqlalchemy import bindparam, insert, select, update
+from sqlalchemy import bindparam, select, update
 
+from study.data.entries import IS_KNOWN, inserting
 from study.data.errands import Errand
 from study.data.events import checked_key, plain
 from study.data.prepared import Prepared, table_of
-from study.data.schema import EventRow, ParticipantRow, SessionRow
+from study.data.schema import ParticipantRow, SessionRow
 from study.data.senders import touching
 
-_E: Final = table_of(EventRow)
 _S: Final = table_of(SessionRow)
 _P: Final = table_of(ParticipantRow)
 Stamp = Literal["consented_at", "about_at", "instructed_at", "begun_at"]
@@ -30,26 +30,11 @@ _STATE: Final = Prepared(
     select(
         _S.c.id.label("sitting_id"),
         _S.c.last_seen_at.label("seen_at"),
-        select(_E.c.id)
-        .where(_E.c.participant_id == bindparam("who"), _E.c.key == bindparam("entry"))
-        .exists()
-        .label("is_known"),
+        IS_KNOWN,
     )
     .where(_S.c.participant_id == bindparam("who"))
     .order_by(_S.c.number.desc())
     .limit(1)
-)
-_ADD: Final = Prepared(
-    insert(_E)
-    .values(
-        participant_id=bindparam("who"),
-        session_id=bindparam("sitting"),
-        key=bindparam("entry"),
-        kind=bindparam("what"),
-        payload=bindparam("told"),
-        created_at=bindparam("now"),
-    )
-    .inline()
 )
 
 
@@ -83,15 +68,5 @@ def noting(
     if state.is_known:
         return False
     sitting = yield from touching(who, state, now)
-    yield (
-        _ADD,
-        {
-            "who": who.id,
-            "sitting": sitting,
-            "entry": key,
-            "what": kind,
-            "told": told,
-            "now": now,
-        },
-    )
+    yield from inserting(who, sitting=sitting, key=key, kind=kind, told=told, now=now)
     return True
