@@ -14,27 +14,13 @@ import numpy.typing as npt
 
 from renderer.clip import ClipSpec
 from renderer.clip_values import REFERENCE_LINES
+from renderer.eye.place import eye_centre_mm
 from renderer.view import View, look_at, perspective
 
 VERTICAL_FOV_DEG: Final = 12.0  # a portrait lens: no wide-angle faces
 IRIS_DIAMETER_MM: Final = 11.7  # horizontal visible iris diameter, 11.71 +- 0.42
 LIMBUS_Z_MM: Final = 10.19  # limbus plane in front of the globe's centre, sqrt(11.75^2 - 5.85^2)
-INTEROCULAR_MM: Final = 62.0
 IRIS_PX: Final = {"macroscopic": 350.0, "near": 160.0, "medium": 40.0, "far": 12.0}
-
-
-def eye_centre_mm(eye: int) -> npt.NDArray[np.float64]:
-    """Return the centre of the viewer's left (0) or right (1) eye in world space."""
-    return np.array([(-0.5 + eye) * INTEROCULAR_MM, 0.0, 0.0])
-
-
-def gaze_deg(spec: ClipSpec, eye: int) -> tuple[float, float]:
-    """Return yaw to the viewer's right and pitch upwards of one eye's gaze; eyes converge inwards.
-
-    ``eye`` is the viewer's left (0) or right (1).
-    """
-    inwards = 0.5 - eye  # the left eye turns to the viewer's right, the right one to the left
-    return spec.gaze_yaw_deg + inwards * spec.vergence_deg, spec.gaze_pitch_deg
 
 
 def camera_radius_mm(distance: str) -> float:

@@ -130,6 +130,14 @@ class ClipSpec:
         growth: float = self.approach_end_px / self.approach_start_px
         return float(self.approach_start_px * growth**way)
 
+    def gaze_deg(self, eye: int) -> tuple[float, float]:
+        """Return yaw to the viewer's right and pitch upwards of one eye's gaze.
+
+        ``eye`` is the viewer's left (0) or right (1); eyes converge inwards.
+        """
+        inwards = 0.5 - eye  # the left eye turns to the viewer's right, the right one to the left
+        return self.gaze_yaw_deg + inwards * self.vergence_deg, self.gaze_pitch_deg
+
     def time_s(self, frame: int) -> float:
         """Return the scene's time in ``frame``: the crowd moves with it."""
         return frame / self.fps

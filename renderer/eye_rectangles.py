@@ -7,8 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from renderer.camera import IRIS_DIAMETER_MM, eye_centre_mm, views
+from renderer.camera import IRIS_DIAMETER_MM, views
 from renderer.clip import ClipSpec
+from renderer.eye.place import eye_centre_mm
 
 Rectangle = tuple[slice, slice]  # rows, columns
 

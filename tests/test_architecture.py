@@ -24,6 +24,8 @@ PURE_RENDERER = (
             "clip_checks",
             "clip_values",
             "detail",
+            "eye",
+            "eye.place",
             "lod",
             "lod.choice",
             "lod.policy",

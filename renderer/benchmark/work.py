@@ -19,10 +19,11 @@ from renderer.benchmark.effects import levels_of
 from renderer.benchmark.result import Bench, Work
 from renderer.benchmark.samples import OURS, SAMPLES
 from renderer.benchmark.stand import ONE, Stand, Step
-from renderer.camera import eye_centre_mm, views
+from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, STANDARD_LODS, Detail
 from renderer.eye.model import eye_constants
+from renderer.eye.place import eye_centre_mm
 from renderer.eye.silhouette import detail_mesh, hull_mesh, vertex_array
 from renderer.frame.frame import FrameRenderer
 from renderer.gl.program import build_program

@@ -14,13 +14,13 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import eye_centre_mm
 from renderer.certification.environments import FACE_PX, SoftEnvironment
 from renderer.certification.view import HALF_MM, TARGET_MM, View
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.calibration import open_lids
 from renderer.eye.eyes import Eyes
+from renderer.eye.place import eye_centre_mm
 from renderer.light import Light
 from renderer.view import look_at
 

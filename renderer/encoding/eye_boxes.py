@@ -12,9 +12,10 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import eye_centre_mm, views
+from renderer.camera import views
 from renderer.clip import ClipSpec
 from renderer.encoding.regions import Box, Stretch
+from renderer.eye.place import eye_centre_mm
 from renderer.eye_rectangles import Rectangle, frame_rectangles
 from renderer.head.lid_pose import lid_poses
 from renderer.head.lid_rims import rim_curves

@@ -15,7 +15,6 @@ import numpy as np
 import pygltflib as gltf
 
 from renderer.atomic_file import write_atomically
-from renderer.camera import eye_centre_mm, gaze_deg
 from renderer.clip import ClipSpec
 from renderer.detail import STANDARD_LODS, Detail
 from renderer.exchange.gltf_buffer import GltfBuffer
@@ -29,6 +28,7 @@ from renderer.exchange.lod_meshes import (
     sclera_tangents,
 )
 from renderer.exchange.meshes import Floats, Mesh
+from renderer.eye.place import eye_centre_mm
 from renderer.sources import code_version
 
 METRES: Final = 1e-3  # per mm
@@ -73,7 +73,7 @@ def _add_eye(
     highest.extras["MSFT_screencoverage"] = [
         round(screen_share(NEEDED_FROM_PX[lod]), 6) for lod in reversed(STANDARD_LODS)
     ]
-    yaw, pitch = gaze_deg(spec, eye)
+    yaw, pitch = spec.gaze_deg(eye)
     return _add_node(
         buffer,
         gltf.Node(

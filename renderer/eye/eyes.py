@@ -9,12 +9,12 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.eye.kept import Kept
 from renderer.eye.lids import LidRims
 from renderer.eye.model import EyeModel
 from renderer.eye.models import EyeModels, Shares, refracting
+from renderer.eye.place import eye_centre_mm
 from renderer.eye.silhouette import common_box
 from renderer.frame.edge_tiles import EdgeTiles
 from renderer.light import Light

@@ -13,7 +13,6 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import eye_centre_mm, gaze_deg
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.anatomy import shader_constants
@@ -22,6 +21,7 @@ from renderer.eye.flat_iris import flat_iris
 from renderer.eye.kept import Kept, Same, fingerprint
 from renderer.eye.lids import LidRims
 from renderer.eye.maps import iris_values, sclera_values, tissue_constants
+from renderer.eye.place import eye_centre_mm
 from renderer.eye.silhouette import (
     Outline,
     Shaded,
@@ -91,7 +91,7 @@ def build_model(
         ("eye.frag", *sorted(constants.items())),
         lambda: build_program(gl, "eye.vert", fragment="eye.frag", constants=constants),
     )
-    turn = gaze_rotation(*gaze_deg(spec, eye))
+    turn = gaze_rotation(*spec.gaze_deg(eye))
     is_gathered = detail.caustics in {"high", "ultra"} and spec.caustic_pattern == "computed"
     mirror = 1.0 if eye == 0 else -1.0
     gain = APPARENT_GAIN if is_gathered else 1.0

@@ -15,7 +15,7 @@ import numpy as np
 from renderer.body.makehuman import Floats, Mesh, base_mesh
 from renderer.body.phenotype import phenotype, target_offsets
 from renderer.body.rig import Rig, fit_rig, pose_vertices, rotation
-from renderer.camera import INTEROCULAR_MM
+from renderer.eye.place import INTEROCULAR_MM
 
 # MakeHuman's globes have 15 mm radius, ours 11.75: her lids meet ours when the head steps back.
 SET_BACK_MM: Final = 4.9

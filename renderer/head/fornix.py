@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from renderer.body.makehuman import Floats
-from renderer.camera import eye_centre_mm
+from renderer.eye.place import eye_centre_mm
 from renderer.gl.program import build_program
 from renderer.gl.uniforms import constant
 from renderer.light import Sky

@@ -12,9 +12,9 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.eye.lids import LidRims
+from renderer.eye.place import eye_centre_mm
 from renderer.frame.bare_mesh import BareMesh
 from renderer.frame.edge_tiles import EdgeTiles
 from renderer.frame.outlines import CLOTH, HAIR, Outlines

@@ -13,7 +13,6 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats
-from renderer.camera import gaze_deg
 from renderer.clip import ClipSpec
 from renderer.eye.anatomy import APEX_MM
 
@@ -60,8 +59,8 @@ STRAIGHT: Final = LidPose()
 
 def lid_poses(spec: ClipSpec) -> tuple[LidPose, LidPose]:
     """Return how the lids of the viewer's left and right eye stand in a clip."""
-    yaw_left, pitch_left = gaze_deg(spec, 0)
-    yaw_right, pitch_right = gaze_deg(spec, 1)
+    yaw_left, pitch_left = spec.gaze_deg(0)
+    yaw_right, pitch_right = spec.gaze_deg(1)
     return (
         LidPose(-yaw_left, pitch_left, spec.blink),
         LidPose(yaw_right, pitch_right, spec.blink),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from renderer.body.makehuman import Floats
-from renderer.camera import eye_centre_mm
+from renderer.eye.place import eye_centre_mm
 
 
 def to_world(points: Floats, eye: int) -> Floats:

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from renderer.body.makehuman import Floats
-from renderer.camera import eye_centre_mm
+from renderer.eye.place import eye_centre_mm
 from renderer.head.brows import BROW_COLOUR, stubble
 from renderer.head.hair import COLOUR as HAIR_COLOUR
 from renderer.head.hair_cap import inside_hairline

@@ -14,7 +14,7 @@ from scipy import sparse
 from scipy.sparse.linalg import cg
 
 from renderer.body.makehuman import Floats, Indices
-from renderer.camera import eye_centre_mm
+from renderer.eye.place import eye_centre_mm
 from renderer.head.sky_visibility import Visible, directions
 from renderer.light import Sky
 from renderer.spherical_harmonics import sh_basis

@@ -9,13 +9,13 @@ import moderngl
 import numpy as np
 import numpy.typing as npt
 
-from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.colour import linear_to_srgb
 from renderer.eye.anatomy import LIMBUS_Z_MM
 from renderer.eye.calibration import open_lids
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import gaze_rotation
+from renderer.eye.place import eye_centre_mm
 from renderer.light import Light, Sky
 from renderer.view import look_at, perspective
 

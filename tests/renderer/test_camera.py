@@ -7,18 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from renderer.camera import (
-    IRIS_PX,
-    LIMBUS_Z_MM,
-    camera_radius_mm,
-    eye_centre_mm,
-    iris_px,
-    iris_px_of_frame,
-    views,
-)
+from renderer.camera import IRIS_PX, LIMBUS_Z_MM, camera_radius_mm, iris_px, iris_px_of_frame, views
 from renderer.clip import ClipSpec
 from renderer.clip_values import DISTANCES
 from renderer.detail import Detail
+from renderer.eye.place import eye_centre_mm
 from renderer.view import View
 
 LOW = Detail.uniform("low")

@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import STANDARD_LODS, TABLE, Detail
 from renderer.exchange.gltf import gaze_quaternion, screen_share, write_eyes
 from renderer.eye.model import gaze_rotation
+from renderer.eye.place import eye_centre_mm
 
 SPEC = ClipSpec(
     left=Detail(), right=Detail(), gaze_yaw_deg=12.0, gaze_pitch_deg=-7.0, vergence_deg=4.0

@@ -11,7 +11,6 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye import maps as eye_maps
@@ -21,6 +20,7 @@ from renderer.eye.caustics import caustic_map
 from renderer.eye.eyes import Eyes
 from renderer.eye.lids import LidRims
 from renderer.eye.micro_relief import micro_relief_tile
+from renderer.eye.place import eye_centre_mm
 from renderer.eye.sclera import ScleraMaps
 from renderer.eye.subsurface import Tissue
 from renderer.gl.program import Program, build_program

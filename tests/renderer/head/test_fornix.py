@@ -5,10 +5,10 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
-from renderer.camera import eye_centre_mm
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.anatomy import GLOBE_RADIUS_MM
+from renderer.eye.place import eye_centre_mm
 from renderer.frame.frame import FrameRenderer
 from renderer.head.fornix import REACHED, TISSUE, disc, radiance, wall
 from renderer.light import Sky

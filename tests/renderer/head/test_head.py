@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from renderer.camera import INTEROCULAR_MM
 from renderer.clip import ClipSpec
 from renderer.detail import Detail
+from renderer.eye.place import INTEROCULAR_MM
 from renderer.head.cells import sort_into_cells
 from renderer.head.character import figure
 from renderer.head.clothing import sweater

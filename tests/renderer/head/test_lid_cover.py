@@ -6,9 +6,9 @@ import moderngl
 import numpy as np
 import pytest
 
-from renderer.camera import eye_centre_mm
 from renderer.eye.geometry import eye_mesh
 from renderer.eye.model import gaze_rotation
+from renderer.eye.place import eye_centre_mm
 from renderer.gl.program import Program, build_program
 from renderer.head.face_mesh import face_mesh
 from renderer.head.lid_pose import LidPose
