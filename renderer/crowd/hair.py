@@ -52,7 +52,8 @@ def hair(person: Person, shape: Floats) -> list[FacePart]:
     end = 1 + locks.tone.size
     normals[end - COLUMNS : end] = normals[end - 2 * COLUMNS : end - COLUMNS]
     normals[len(normals) - len(mesh.inwards) :] = mesh.inwards
-    surface = np.column_stack([np.outer(mesh.tone, person.hair), mesh.strand])
+    albedo = np.minimum(np.outer(mesh.tone, person.hair), 1.0)  # a strand of white hair is whiter
+    surface = np.column_stack([albedo, mesh.strand])
     used, compact = np.unique(mesh.triangles, return_inverse=True)
     return [FacePart(mesh.points_mm[used], normals[used], surface[used], compact.reshape(-1, 3))]
 
