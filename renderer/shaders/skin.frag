@@ -2,9 +2,12 @@
 // map, blood and melanin from a third picture; two oily lobes that the relief breaks up.
 // LIDS 0: no lids near, their map is not read. WET 0: no tears either, and nothing lets light through.
 
-#include "light.glsl"
 #include "specular.glsl"
 
+flat in vec3 v_sun_direction;
+flat in vec3 v_sun_irradiance;
+flat in vec4 v_maps;           // range of slopes; scale of the colour's tile; slopes' lost variance
+flat in float v_mark;
 in vec3 v_normal;
 in vec3 v_half;
 in vec3 v_albedo;
@@ -17,11 +20,6 @@ in vec4 v_lid;
 uniform sampler2D u_relief;    // slope x, slope y, openness, mottle; one level per view
 uniform sampler2D u_lids;      // slope x, slope y, openness, blood
 uniform sampler2D u_colour;    // blood, melanin, oil, strength of the relief
-uniform float u_colour_scale;  // from the relief's tiles to the colour's
-uniform float u_slope_range;   // slopes run from minus to plus this
-uniform vec2 u_lost_variance;  // of the slopes that the levels no longer show: face, lids
-
-uniform float u_mark;          // of what is drawn, for outlines
 
 out vec4 out_radiance;
 
@@ -54,7 +52,7 @@ void main() {
 
     vec4 face = textureLod(u_relief, v_detail.xy, 0.0);
     vec4 crepe = LIDS == 1 ? textureLod(u_lids, v_detail.zw, 0.0) : vec4(0.5);
-    vec4 colour = textureLod(u_colour, v_detail.xy * u_colour_scale, 0.0) - 0.5;
+    vec4 colour = textureLod(u_colour, v_detail.xy * v_maps.y, 0.0) - 0.5;
     vec2 share = LIDS == 1 ? clamp(v_lid.zw, 0.0, 2.0) : vec2(1.0, 0.0);
     bool is_conjunctiva = WET == 1 && v_lid.w < 0.0;
     float thin = LIDS == 1 ? share.y / max(share.x + share.y, 1e-3) : 0.0, grain = min(share.x, 1.0) * (1.0 - dry);
@@ -62,10 +60,10 @@ void main() {
     share.x *= 1.0 + 1.6 * colour.a;
     float shown = clamp(v_lid.y, 0.0, 1.0);
     if (is_conjunctiva) face = vec4(1.0 - face.xy, 1.0, face.a);  // granules stand out, pores do not
-    vec2 slope = ((face.xy - 0.5) * share.x + (crepe.xy - 0.5) * share.y) * (2.0 * u_slope_range * shown);
+    vec2 slope = ((face.xy - 0.5) * share.x + (crepe.xy - 0.5) * share.y) * (2.0 * v_maps.x * shown);
     float rugged = shown * min(share.x + share.y, 1.0) * (1.0 - 0.4 * grain);
     float open = 1.0 - rugged * (1.0 - mix(face.z, crepe.z, thin));
-    vec2 lost = u_lost_variance + (1.0 - shown * shown) * 0.03;
+    vec2 lost = v_maps.zw + (1.0 - shown * shown) * 0.03;
     float rough = 2.0 * mix(lost.x, lost.y, thin) * dry;  // Beckmann: m^2 is twice the variance
 
     float flush = is_conjunctiva ? FLUSH : 1.0;
@@ -75,11 +73,11 @@ void main() {
     albedo *= 1.0 - CAVITY * (1.0 - open);
 
     vec3 n_detail = normalize(n - slope.x * t - slope.y * b);
-    float cosine = max(dot(n_detail, u_sun_direction), 0.0);
-    float change = cosine - max(dot(n, u_sun_direction), 0.0);
+    float cosine = max(dot(n_detail, v_sun_direction), 0.0);
+    float change = cosine - max(dot(n, v_sun_direction), 0.0);
     float upwards = n_detail.y - n.y;
     vec3 diffuse = v_diffuse * (1.0 + SKYLINE * upwards * SHARPNESS)
-        + u_sun_irradiance * (sun * change / PI) * SHARPNESS;
+        + v_sun_irradiance * (sun * change / PI) * SHARPNESS;
 
     vec3 h = normalize(v_half);
     float n_dot_h = dot(n_detail, h), oil = gloss * max(1.0 + 2.4 * colour.b, 0.0);
@@ -88,10 +86,10 @@ void main() {
         + (0.50 / PI) * oil * exp2(2.885390 * (n_dot_h - 1.0) / oily_m2) / oily_m2;
     lobes *= open * open;
     if (WET == 1) lobes += (1.0 - dry) * wet_lobe(normalize(mix(n, n_detail, WET_FOLLOWS)), h, grain);
-    vec3 mirrored = u_sun_irradiance * (max(v_surface.y, 0.0) * cosine * lobes);
+    vec3 mirrored = v_sun_irradiance * (max(v_surface.y, 0.0) * cosine * lobes);
     vec3 sheen = v_sheen * (open * max(1.0 + 2.0 * upwards, 0.0));
     // Clamped: at edges of triangles varyings are extrapolated to the pixel's middle.
-    float cover = WET == 1 ? clamp(1.0 - (1.0 - dry) * (1.0 - lid), 0.0, 1.0) : 1.0 + u_mark;
+    float cover = WET == 1 ? clamp(1.0 - (1.0 - dry) * (1.0 - lid), 0.0, 1.0) : 1.0 + v_mark;
     vec3 radiance = max(albedo * max(diffuse, vec3(0.0)) + mirrored + sheen, vec3(0.0));
     out_radiance = vec4(radiance, cover);
 }

@@ -15,7 +15,16 @@ in float in_lid;      // 1 on the lids' crepe; where tears stand, how much is co
 uniform mat4 u_view_matrix;
 uniform mat4 u_projection;
 uniform vec3 u_camera_mm;
+uniform float u_slope_range;   // slopes run from minus to plus this
+uniform float u_colour_scale;  // from the relief's tiles to the colour's
+uniform vec2 u_lost_variance;  // of the slopes that the levels no longer show: face, lids
+uniform float u_mark;          // of what is drawn, for outlines
 
+// What a draw leaves alone. Software GL fetches a uniform for every pixel, what is flat for eight.
+flat out vec3 v_sun_direction;
+flat out vec3 v_sun_irradiance;
+flat out vec4 v_maps;   // u_slope_range, u_colour_scale, u_lost_variance
+flat out float v_mark;
 out vec3 v_world;
 out vec3 v_normal;
 out vec3 v_half;      // between the view and the sun
@@ -42,6 +51,10 @@ void main() {
         + wet * environment_fresnel(n_dot_v, 0.1, TEAR_F0));
     // Kelemen and Szirmay-Kalos 2001: visibility over the cosines is about 1 / (4 (l h)^2).
     float strength = sun * schlick(l_dot_h, SKIN_F0) / (4.0 * l_dot_h * l_dot_h);
+    v_sun_direction = u_sun_direction;
+    v_sun_irradiance = u_sun_irradiance;
+    v_maps = vec4(u_slope_range, u_colour_scale, u_lost_variance);
+    v_mark = u_mark;
     v_world = in_position;
     v_normal = n;
     v_half = h;
