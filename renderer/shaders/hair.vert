@@ -25,7 +25,8 @@ out vec3 v_glint;
 out vec4 v_ribbon;    // way across in px, half width in px, place along, thinning number
 out float v_shadow;
 
-const float MARGIN_PX = 0.5;   // a pixel whose middle lies beside the hair is partly covered
+// A pixel whose middle lies beside the hair is partly covered: as far as hair.frag's filters reach.
+const float MARGIN_PX = LOCK > 1 || MARK == 1 ? 0.5 : 1.0;
 const float SHADOW_LIFT_MM = 0.5;
 
 // A hair swells where it leaves the skin and narrows to a point; a lock thins out strand by strand.

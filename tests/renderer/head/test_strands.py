@@ -122,6 +122,21 @@ def test_a_hair_a_little_thicker_is_a_little_darker(gl: moderngl.Context) -> Non
     assert areas[2] / areas[0] == pytest.approx(1.10, abs=0.01)
 
 
+def test_the_ground_does_not_shine_in_dashes_between_hairs_that_touch(
+    gl: moderngl.Context,
+) -> None:
+    """A seam that runs across pixels is as dark on their edges as on their middles."""
+    px_per_mm, row = 10.0, 46
+    width_px = darkness(gl, straight(1, 0.4, slope=0.0), px_per_mm)[row].sum()
+    dark = []
+    for shift_px in (0.0, 0.25, 0.5, 0.75):
+        strands = straight(2, 0.4, slope=0.0)
+        middle_px = np.array([-0.5, 0.5]) * width_px + shift_px
+        strands.points_mm[..., 0] = (middle_px / px_per_mm)[:, None]
+        dark.append(darkness(gl, strands, px_per_mm)[row].sum())
+    assert np.ptp(dark) < 0.08  # of a pixel
+
+
 @pytest.mark.parametrize("slope", [0.03, 0.4])
 def test_a_lock_on_the_outline_is_a_line_without_gaps(gl: moderngl.Context, slope: float) -> None:
     s = np.linspace(-0.5, 0.5, SHAFT) * 30.0
