@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import threading
 import time
@@ -21,6 +22,10 @@ from playwright.sync_api import Page, expect, sync_playwright
 from renderer.clip import ClipSpec
 from renderer.detail import EFFECTS, Detail
 from renderer.lod.policy import default_policy
+from study.cli import main
+from study.commands import inspect
+from study.commands.errors import CommandError
+from study.commands.eye_options import spec_of
 from study.inspection.app import create_inspection
 from study.inspection.look import Look, code_of, detail_of
 
@@ -336,6 +341,44 @@ def test_the_page_starts_where_the_command_says(board: Board) -> None:
             unescape(httpx.get(address, timeout=30).text.split('data-start="')[1].split('">')[0])
         )
     assert Look(**told["first"]) == first
+
+
+def options_of(*arguments: str) -> argparse.Namespace:
+    parser = argparse.ArgumentParser()
+    inspect.add_arguments(parser)
+    return parser.parse_args(arguments)
+
+
+def test_the_command_says_where_the_page_starts() -> None:
+    options = options_of("--azimuth", "200", "--elevation", "10", "--left", "low")
+    first = inspect.first_look(options, spec_of(options))
+    assert (first.azimuth, first.elevation, first.left, first.right) == (
+        *(-160.0, 10.0),
+        *("l" * 7, "u" * 7),
+    )
+    assert (first.eyes, first.distance, first.time) == ("halves", 350.0, 0.0)
+    options = options_of("--frame", "150", "--distance", "medium")
+    first = inspect.first_look(options, spec_of(options))
+    assert (first.azimuth, first.eyes, first.distance) == (60.0, "both", 40.0)
+    assert first.time == pytest.approx(149 / 30)
+    options = options_of("--elevation", "85")
+    with pytest.raises(CommandError, match=r"--elevation 85: .* up and down to 80 degrees"):
+        inspect.first_look(options, spec_of(options))
+
+
+def test_a_machine_without_gl_is_told_before_a_page_is_served(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refuse(**_settings: object) -> None:
+        raise ValueError("found 0 devices")
+
+    monkeypatch.setattr("moderngl.create_context", refuse)
+    monkeypatch.setattr("uvicorn.run", lambda *_, **__: pytest.fail("a page was served"))
+    monkeypatch.setattr("study.commands.listening.check_port", lambda _settings: None)
+    assert main(["inspect"]) == 1
+    told = capsys.readouterr().err.strip()
+    assert told.startswith("ocularist inspect: no OpenGL 4.3 context through EGL (found 0 devices)")
+    assert "\n" not in told
 
 
 def test_a_picture_that_fails_is_told_on_the_page(page: Page, board: Board) -> None:
