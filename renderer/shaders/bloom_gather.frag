@@ -1,5 +1,6 @@
-// Provides: the picture's radiance at a quarter of its width. Every other pixel, as on a chessboard:
-// glints are wider than that. PX is how many picture pixels a texel is wide.
+// Provides: the picture's radiance at a quarter of its width. Every other row: glints are wider than
+// that, and software GL waits longer for a picture's rows than for what it does with them. PX is how
+// many picture pixels a texel is wide.
 
 uniform sampler2D u_radiance;
 uniform int u_wide;       // pixels of one view
@@ -14,8 +15,8 @@ void main() {
     ivec2 first = ivec2(view * u_wide + (texel.x - view * u_columns) * PX, texel.y * PX);
     ivec2 last = ivec2((view + 1) * u_wide, textureSize(u_radiance, 0).y) - 1;
     vec3 sum = vec3(0.0);
-    for (int j = 0; j < PX; ++j)
-        for (int i = j & 1; i < PX; i += 2)
+    for (int j = 0; j < PX; j += 2)
+        for (int i = 0; i < PX; ++i)
             sum += texelFetch(u_radiance, min(first + ivec2(i, j), last), 0).rgb;
     o_radiance = vec4(2.0 * sum / float(PX * PX), 1.0);
 }

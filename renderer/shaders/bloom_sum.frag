@@ -1,4 +1,5 @@
-// Provides: a level of the bloom's pyramid, blurred and weighted, on top of the sum of wider ones.
+// Provides: a level of the bloom's pyramid, blurred and weighted, on top of the sum of wider ones,
+// which is blurred already.
 
 #include "bloom.glsl"
 
@@ -21,5 +22,5 @@ vec3 blurred(sampler2D picture, vec2 uv) {
 
 void main() {
     vec2 size = vec2(textureSize(u_picture, 0)), uv = gl_FragCoord.xy / size;
-    o_radiance = vec4(u_weight * blurred(u_picture, uv) + blurred(u_wider, uv), 1.0);
+    o_radiance = vec4(u_weight * blurred(u_picture, uv) + textureLod(u_wider, within_view(uv, uv.x, u_wider), 0.0).rgb, 1.0);
 }

@@ -16,7 +16,7 @@ def reference(radiance: np.ndarray) -> np.ndarray:
 
 def test_flat_radiance_becomes_srgb_within_the_dither(gl: moderngl.Context) -> None:
     picture = Picture(gl, (64, 64))
-    for value in (0.0, 0.003, 0.05, 0.18, 0.7, 2.0, 40.0):
+    for value in (0.0, 0.003, 0.0065, 0.02, 0.05, 0.18, 0.7, 2.0, 8.0, 11.0, 40.0, 60000.0):
         picture.begin()
         picture.target.clear(value, value / 2, value / 4, 1.0)
         frame = picture.finish().astype(float)
