@@ -95,20 +95,17 @@ class CrowdCube:
     def _chosen_draws(self) -> list[_FaceDraw]:
         """Return what to draw of each face that people or shadows touch, or did."""
         bounds = self.crowd.bounds_mm()
-        points, reach_mm, firsts = bounds.centres_mm, bounds.reach_mm, bounds.firsts
-        found = touched(
-            np.concatenate([points, self._on_ground(points)]),
-            np.concatenate([reach_mm, reach_mm]),
-            near_mm=NEAR_MM,
-        )
-        starts = np.concatenate([firsts, firsts + len(points)])
-        who = np.logical_or.reduceat(found.spheres, starts, axis=1).reshape(6, 2, len(firsts))
-        stale, self._drawn = self._drawn, found.tiles
+        points, reach_mm = bounds.centres_mm, bounds.reach_mm
+        grounded, shape = on_ground(points, self.crowd.light.sky.sun_direction)
+        seen = touched(points, reach_mm, near_mm=NEAR_MM)
+        cast = touched(grounded, reach_mm, near_mm=NEAR_MM, shape=shape)
+        stale, self._drawn = self._drawn, seen.tiles | cast.tiles
         changed = stale | self._drawn
+        who = np.logical_or.reduceat([seen.bodies, cast.bodies], bounds.firsts, axis=2)
         draws = []
         for face in np.flatnonzero(changed.any(axis=(1, 2))).tolist():
-            seen, cast = (np.flatnonzero(some).tolist() for some in who[face])
-            draws.append(_FaceDraw(face, seen, cast, self._rectangles(changed[face])))
+            numbers, casting = (np.flatnonzero(own).tolist() for own in who[:, face])
+            draws.append(_FaceDraw(face, numbers, casting, self._rectangles(changed[face])))
         return draws
 
     def _rectangles(self, tiles: Bools) -> list[Rectangle]:
@@ -118,10 +115,16 @@ class CrowdCube:
             for x, y, width, height in cover(tiles)
         ]
 
-    def _on_ground(self, points: Floats) -> Floats:
-        """Slide points along the sun's light on to the ground, as the shadow's shader does."""
-        sun = self.crowd.light.sky.sun_direction
-        fall = np.maximum(points[:, 1] - GROUND_MM, 0.0) / max(float(sun[1]), 0.1)
-        grounded = points - fall[:, None] * sun
-        grounded[:, 1] = GROUND_MM
-        return np.asarray(grounded)
+
+def on_ground(points: Floats, sun_direction: Floats) -> tuple[Floats, Floats]:
+    """Slide points (n, 3) along the sun's light on to the ground, as the shadow's shader does.
+
+    Returns them and the matrix (3, 3) that carries what lies around a point there.
+    """
+    slide = np.eye(3)
+    slide[:, 1] -= sun_direction / max(float(sun_direction[1]), 0.1)
+    slide[1] = 0.0
+    heights = np.maximum(points[:, 1] - GROUND_MM, 0.0)
+    grounded = points * [1.0, 0.0, 1.0] + heights[:, None] * slide[:, 1]
+    grounded[:, 1] = GROUND_MM
+    return grounded, slide

@@ -14,13 +14,17 @@ SPEC = ClipSpec(left=Detail.uniform("ultra"), right=Detail.uniform("ultra"))
 SUN = np.array([-0.44, 0.64, 0.63]) / np.linalg.norm([-0.44, 0.64, 0.63])
 
 
-@pytest.fixture(scope="module")
-def crowd(gl: moderngl.Context) -> Crowd:
+def light_from(gl: moderngl.Context, sun_direction: np.ndarray) -> Light:
     sh = np.zeros((9, 3))
     sh[0] = 1.0
-    sky = Sky(sun_direction=SUN, sun_irradiance=np.full(3, 2.0), ambient_sh=sh)
+    sky = Sky(sun_direction=sun_direction, sun_irradiance=np.full(3, 2.0), ambient_sh=sh)
     lit = gl.texture((2, 2), 1, np.ones(4, np.float32).tobytes(), dtype="f4")
-    return Crowd(gl, SPEC, Light(sky, lit, np.eye(4, dtype=np.float32)))
+    return Light(sky, lit, np.eye(4, dtype=np.float32))
+
+
+@pytest.fixture(scope="module")
+def crowd(gl: moderngl.Context) -> Crowd:
+    return Crowd(gl, SPEC, light_from(gl, SUN))
 
 
 def faces(cube: CrowdCube) -> np.ndarray:
@@ -120,6 +124,20 @@ def test_on_a_gpu_whole_faces_are_drawn_and_show_the_same(gl, crowd, monkeypatch
             found, expected = texels(whole, level), texels(chosen, level)
             assert expected[..., 3].any()
             np.testing.assert_allclose(found, expected, rtol=0.002, atol=1e-5)
+
+
+def test_long_shadows_of_a_low_sun_leave_no_trace(gl, crowd, monkeypatch) -> None:
+    elevation = np.radians(5.0)
+    sun = np.array([0.0, np.sin(elevation), np.cos(elevation)])
+    monkeypatch.setattr(crowd, "light", light_from(gl, sun))
+    used = CrowdCube(gl, 128, crowd)
+    used.render(0.0)
+    used.render(1.5)
+    fresh = CrowdCube(gl, 128, crowd)
+    fresh.render(1.5)
+    np.testing.assert_array_equal(faces(used), faces(fresh))
+    for level in (1, 4):
+        np.testing.assert_allclose(texels(used, level), texels(fresh, level), atol=0.002)
 
 
 def test_a_frame_asks_gl_for_few_draws_and_no_new_targets(gl, crowd, monkeypatch) -> None:

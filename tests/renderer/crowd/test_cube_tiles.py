@@ -14,9 +14,9 @@ def test_a_sphere_touches_the_face_it_stands_before_and_not_the_opposite(face: i
     column, row = round((0.3 + 1) / 2 * TILES), round((-0.2 + 1) / 2 * TILES)
     assert found.tiles[face, row, column]
     assert 1 <= found.tiles[face].sum() <= 9
-    assert found.spheres[face].all()
+    assert found.bodies[face].all()
     assert not found.tiles[face ^ 1].any()
-    assert not found.spheres[face ^ 1].any()
+    assert not found.bodies[face ^ 1].any()
 
 
 def test_whatever_lies_in_a_sphere_lies_in_its_tiles() -> None:
@@ -36,10 +36,19 @@ def test_whatever_lies_in_a_sphere_lies_in_its_tiles() -> None:
             for across in (right, down)
         )
         assert found.tiles[face, row, column].all()
-        assert found.spheres[face, np.nonzero(on_it)[1]].all()
+        assert found.bodies[face, np.nonzero(on_it)[1]].all()
         hits += on_it.sum()
     assert hits > 10000
-    assert found.spheres.sum() < 180  # of 360
+    assert found.bodies.sum() < 180  # of 360
+
+
+def test_a_shape_stretches_what_lies_around_points() -> None:
+    flat = np.diag([3.0, 0.0, 1.0])
+    at, reach_mm = np.array([[0.0, -500.0, 1000.0]]), np.array([100.0])
+    rows, columns = np.nonzero(touched(at, reach_mm, near_mm=NEAR_MM, shape=flat).tiles[4])
+    # Down half of the way to the lower edge, from 900 to 1100 mm away, 300 mm to either side.
+    assert set(rows) == {11, 12}
+    assert set(columns) == set(range(5, 11))
 
 
 def test_tiles_of_many_spheres_are_those_of_each() -> None:
