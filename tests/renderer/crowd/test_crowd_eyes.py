@@ -8,11 +8,11 @@ import moderngl
 import numpy as np
 import pytest
 
+from renderer.body.rig import skin_vertices
 from renderer.camera import LIMBUS_Z_MM, iris_px, views
 from renderer.clip import ClipSpec
 from renderer.crowd import gaze
 from renderer.crowd.bodies import build_figures
-from renderer.crowd.culling import Spheres
 from renderer.crowd.eye_groups import (
     CAUSTIC_STEP_DEG,
     IRISES,
@@ -21,6 +21,7 @@ from renderer.crowd.eye_groups import (
     crowd_mesh,
 )
 from renderer.crowd.eyes import PAINTED_PX
+from renderer.crowd.figure import BONES
 from renderer.crowd.figures import Figure
 from renderer.crowd.formation import CAMERA_MM, formation, group_view
 from renderer.crowd.gaze import CrowdGaze
@@ -70,19 +71,23 @@ def test_all_sixty_eyes_are_in_the_group_view_and_nobody_hides_one(
     assert sizes.min() > PAINTED_PX, "every eye is a real one"
     assert sizes.max() > 4 * sizes.min()
     assert len({default_policy().choose(px) for px in sizes}) >= 2
-    bounds = Spheres(figures).carried(bones)
-    camera = np.array(CAMERA_MM)
     pupils = placed[:, :3, 3] + 13.0 * placed[:, :3, 2]
-    for eye, pupil in enumerate(pupils):
-        towards = (pupil - camera) / np.linalg.norm(pupil - camera)
-        for number, figure in enumerate(figures):
-            if number != gazes.figure[eye]:
-                centres = np.split(bounds.centres_mm, bounds.firsts[1:])[number] - camera
-                along = centres @ towards
-                off = np.linalg.norm(centres - along[:, None] * towards, axis=1)
-                is_before = (along > 0) & (along < np.linalg.norm(pupil - camera))
-                # The spheres are up to 25 mm wider than the bodies.
-                assert (off > figure.spheres[1] - 60.0)[is_before].all(), (eye, number)
+    for number, figure in enumerate(figures):
+        body = figure.body
+        weights = np.zeros((len(body.positions_mm), len(BONES)))
+        np.add.at(weights, (np.arange(len(weights))[:, None], body.bones), body.weights)
+        posed = skin_vertices(body.positions_mm, bones[number], weights=weights)
+        others = pupils[gazes.figure != number]
+        assert distance_from_sight_mm(posed, others) > 30.0, figure.member.person.name
+
+
+def distance_from_sight_mm(points: np.ndarray, pupils: np.ndarray) -> float:
+    """Return how near points come to the lines from the camera to pupils."""
+    from_camera, far = points - CAMERA_MM, pupils - CAMERA_MM
+    reach = np.linalg.norm(far, axis=1)
+    along = from_camera @ (far / reach[:, None]).T
+    off = np.sqrt(np.maximum((from_camera**2).sum(axis=1)[:, None] - along**2, 0.0))
+    return float(off[(along > 0) & (along < reach)].min(initial=np.inf))
 
 
 def test_eyes_are_measured_as_the_main_characters_are() -> None:
