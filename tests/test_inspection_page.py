@@ -318,7 +318,7 @@ def test_keys_work_after_a_click_on_a_button_or_a_choice_in_a_list(
     page.keyboard.press("b")
     assert settled(board, more_than=before).left_switching == "blended"
     before = len(board.asked)
-    page.get_by_role("button", name="medium M").click()
+    page.get_by_role("button", name="all medium M").click()
     changed = settled(board, more_than=before)
     assert (changed.left, changed.left_switching) == ("m" * 7, "fixed")
 
