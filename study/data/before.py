@@ -7,9 +7,10 @@ show. Facts are worked out once, when the report is stored, and can be worked ou
 from __future__ import annotations
 
 from collections.abc import Mapping
+from datetime import datetime
 from typing import Any, Final
 
-from sqlalchemy import func, select
+from sqlalchemy import bindparam, func, select
 
 from study.data import events
 from study.data.checks import CheckName, doing
@@ -18,6 +19,7 @@ from study.data.errands import Errand
 from study.data.events import Recorded
 from study.data.notes import noting, told_before
 from study.data.participants import Participant
+from study.data.prepared import Prepared, table_of
 from study.data.progress import early_step
 from study.data.refusals import NotReachedError
 from study.data.schema import EventRow
@@ -27,6 +29,10 @@ from study.design.definition import StudyDefinition
 
 DEVICE_FAILED: Final = "device_check_failed"
 EYESIGHT_AGREED: Final = "eyesight_agreed"
+_E: Final = table_of(EventRow)
+_OF_KIND: Final = (_E.c.participant_id == bindparam("who"), _E.c.kind == bindparam("what"))
+_FIRST: Final = Prepared(select(_E.c.payload).where(*_OF_KIND).order_by(_E.c.id).limit(1))
+_COUNT: Final = Prepared(select(func.count().label("times")).where(*_OF_KIND))
 
 
 def record(
@@ -77,14 +83,13 @@ def recording(
 
 def facts_of(db: Database, participant: Participant, check: CheckName) -> dict[str, Any]:
     """Return the facts that a check has brought; empty before it is done."""
-    query = (
-        select(EventRow.payload)
-        .where(EventRow.participant_id == participant.id, EventRow.kind == check)
-        .order_by(EventRow.id)
-    )
-    with db.reading() as session:
-        payload = session.scalars(query).first()
-    return {} if payload is None else dict(payload.get("facts", {}))
+    return db.look(lambda: finding_facts(participant.id, check))
+
+
+def finding_facts(participant_id: int, check: CheckName) -> Errand[dict[str, Any]]:
+    """Do the same as an errand."""
+    rows = yield _FIRST, {"who": participant_id, "what": check}
+    return dict(rows[0].payload.get("facts", {})) if rows else {}
 
 
 def note(db: Database, participant: Participant, kind: str, *, key: str, payload: Any) -> Recorded:
@@ -92,10 +97,18 @@ def note(db: Database, participant: Participant, kind: str, *, key: str, payload
     return events.record(db, participant, key=key, kind=kind, payload=payload)
 
 
+def jotting(who: Any, kind: str, *, key: str, payload: Any, now: datetime) -> Errand[bool]:
+    """Do the same as an errand; ``who`` is the participant's row, held for writing."""
+    state = yield from told_before(who, key)
+    return (yield from noting(who, state, key=key, kind=kind, payload=payload, now=now))
+
+
 def times(db: Database, participant: Participant, kind: str) -> int:
     """Return how often something was noted about a participant."""
-    query = select(func.count()).where(
-        EventRow.participant_id == participant.id, EventRow.kind == kind
-    )
-    with db.reading() as session:
-        return int(session.scalar(query) or 0)
+    return db.look(lambda: counting(participant.id, kind))
+
+
+def counting(participant_id: int, kind: str) -> Errand[int]:
+    """Do the same as an errand."""
+    rows = yield _COUNT, {"who": participant_id, "what": kind}
+    return int(rows[0].times)

@@ -17,6 +17,7 @@ from study.design.definition import StudyDefinition
 from study.design.questions import AnswerError, Question
 from study.site.access import Visitor, visitor_or_none
 from study.site.asker import nobody
+from study.site.casting import Frame
 from study.site.forms import answers_in, first, question_rows
 from study.site.place import Place
 from study.site.way import AtStep, Sent, at_step, go_on, on_the_way, sent_form
@@ -33,7 +34,7 @@ async def about(request: Request) -> Response:
     return at.page("about", own={"key": secrets.token_hex(16)}, fixed=partial(_blank, at))
 
 
-def _blank(at: AtStep) -> dict[str, Any]:
+def _blank(at: AtStep, _: Frame) -> dict[str, Any]:
     definition = at.visitor.study.definition
     questions = steps.asked_about(definition, with_health=at.has_health)
     return {
@@ -102,7 +103,7 @@ async def instructions(request: Request) -> Response:
     return at.page(
         "instructions",
         own={"resume_url": at.visitor.resume_url},
-        fixed=lambda: {"instructions": at.visitor.study.definition.instructions},
+        fixed=lambda _: {"instructions": at.visitor.study.definition.instructions},
     )
 
 

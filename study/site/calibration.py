@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import secrets
-from typing import Final
+from functools import partial
+from typing import Any, Final
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, Response
 from pydantic import ValidationError
 
-from study.data import before
+from study.data.errands import Errand
 from study.design import viewing
 from study.design.calibration import (
     Calibration,
@@ -18,10 +19,12 @@ from study.design.calibration import (
     calibrated,
     calibration_facts,
 )
-from study.site.access import AVisitor, Visitor, VisitorsForm, step_of, to_current
+from study.design.definition import StudyDefinition
+from study.site.access import Visitor
+from study.site.before_clips import Facts, is_at, keeping, once_more
 from study.site.forms import first
-from study.site.place import Here
-from study.site.way import on_the_way
+from study.site.place import Place
+from study.site.way import Sent, at_step, go_on, on_the_way, sent_form
 
 router = APIRouter(default_response_class=HTMLResponse)
 STEP: Final = "calibration"
@@ -32,46 +35,51 @@ _IMPOSSIBLE: Final = {
 
 
 @router.get("/calibration")
-def show(here: Here, visitor: AVisitor) -> Response:
+async def show(request: Request) -> Response:
     """Measure the screen and the distance."""
-    step_of(here, visitor, STEP)
-    return _page(here, visitor)
+    at = await at_step(request, STEP)
+    content = partial(_content, at.visitor.study.definition)
+    return at.page(STEP, own={"key": secrets.token_hex(16)}, fixed=lambda _: content())
 
 
-def _page(here: Here, visitor: Visitor, *, fault: str = "") -> Response:
-    wanted = visitor.study.definition.calibration or Calibration()
+def _content(definition: StudyDefinition, *, fault: str = "") -> dict[str, Any]:
+    return {
+        "wanted": definition.calibration or Calibration(),
+        "card_mm": (viewing.CARD_WIDTH_MM, viewing.CARD_HEIGHT_MM),
+        "blind_spot_deg": viewing.BLIND_SPOT_DEG,
+        "eye_mm": viewing.LEFT_EYE_MM,
+        "fault": fault,
+    }
+
+
+def _with_fault(fault: str, here: Place, visitor: Visitor) -> Response:
     return here.page(
         "participant/calibration.html",
-        status=422 if fault else 200,
+        status=422,
         **on_the_way(here, visitor, STEP),
-        wanted=wanted,
-        card_mm=(viewing.CARD_WIDTH_MM, viewing.CARD_HEIGHT_MM),
-        blind_spot_deg=viewing.BLIND_SPOT_DEG,
-        eye_mm=viewing.LEFT_EYE_MM,
-        fault=fault,
+        **_content(visitor.study.definition, fault=fault),
         key=secrets.token_hex(16),
     )
 
 
 @router.post("/calibration")
-def store(here: Here, visitor: AVisitor, fields: VisitorsForm) -> Response:
+async def store(request: Request) -> Response:
     """Store what was measured, or why it was not; measures that cannot be are asked for again."""
-    step = step_of(here, visitor)
-    if step.name != STEP:
-        return to_current(here, visitor)
+    sent = await sent_form(request)
     try:
-        report = CalibrationReport.model_validate_json(first(fields, "report"))
-        found = calibrated(report)
+        report = CalibrationReport.model_validate_json(first(sent.fields, "report"))
+        facts = calibration_facts(report, calibrated(report))
     except ValidationError:
-        return _page(here, visitor, fault="calibration.unreadable")
+        return await once_more(request, sent, STEP, partial(_with_fault, "calibration.unreadable"))
     except CalibrationError as error:
-        return _page(here, visitor, fault=_IMPOSSIBLE[error.what])
-    before.record(
-        here.db,
-        visitor.participant,
-        STEP,
-        key=first(fields, "key") or STEP,
-        report=report.model_dump(mode="json"),
-        facts=calibration_facts(report, found),
-    )
-    return to_current(here, visitor)
+        page = partial(_with_fault, _IMPOSSIBLE[error.what])
+        return await once_more(request, sent, STEP, page)
+    return await go_on(request, sent, partial(_store, sent, report, facts))
+
+
+def _store(
+    sent: Sent, report: CalibrationReport, facts: Facts, who: Any, definition: StudyDefinition
+) -> Errand[None]:
+    if (yield from is_at(who, definition, STEP)):
+        kept = report.model_dump(mode="json")
+        yield from keeping(sent, who, definition, STEP, report=kept, facts=facts)

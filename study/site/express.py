@@ -18,7 +18,18 @@ from fastapi import FastAPI, Request
 from fastapi.responses import Response
 from starlette.types import Receive, Scope, Send
 
-from study.site import about, consent, ending, news, preparing, trial, way
+from study.site import (
+    about,
+    calibration,
+    consent,
+    device_check,
+    ending,
+    eyesight,
+    news,
+    preparing,
+    trial,
+    way,
+)
 from study.site.errors import answer_error, is_foreseen
 from study.site.headers import completed, is_foreign, limited
 from study.site.language import LANGUAGE_FIELD
@@ -34,6 +45,12 @@ _ACTS: Final[Mapping[tuple[str, str], Act]] = {
     ("GET", "/continue"): way.lead,
     ("GET", "/about-you"): about.about,
     ("POST", "/about-you"): about.store_about,
+    ("GET", "/device-check"): device_check.show,
+    ("POST", "/device-check"): device_check.store,
+    ("GET", "/calibration"): calibration.show,
+    ("POST", "/calibration"): calibration.store,
+    ("GET", "/eyesight"): eyesight.show,
+    ("POST", "/eyesight"): eyesight.store,
     ("GET", "/instructions"): about.instructions,
     ("POST", "/instructions"): about.read_instructions,
     ("GET", "/preparing"): preparing.preparing,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Final
 
 import jinja2
@@ -28,6 +29,11 @@ class Parts:
     blank: Markup
     estimate_s: float
     moulds: Moulds = field(default_factory=Moulds)
+
+    @cached_property
+    def clip_ids(self) -> tuple[str, ...]:
+        """The ids of every clip in any size and direction; each is a hash, which takes its time."""
+        return tuple(one.spec.clip_id for one in self.definition.wanted_specs())
 
     def rows_of(self, questions: Sequence[Question]) -> list[list[Question]]:
         """Return a trial's questions in rows: those of every trial, unless it asks others."""

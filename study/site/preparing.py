@@ -41,7 +41,7 @@ async def preparing(request: Request) -> Response:
     return at.page(
         "preparing",
         own={"resume_url": at.visitor.resume_url},
-        fixed=lambda: {
+        fixed=lambda _: {
             "smallest": min(definition.sizes, key=lambda size: size.width),
             "has_practice": bool(definition.practice),
         },

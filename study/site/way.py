@@ -5,7 +5,7 @@ A page is one look at the database and a form one errand, among those of everybo
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -25,7 +25,7 @@ from study.site.access import (
     step_url,
 )
 from study.site.asker import Asker, by_cookie, found, locked, study_of
-from study.site.casting import cast_page
+from study.site.casting import Frame, cast_page
 from study.site.forms import Fields, first, read_form
 from study.site.frame import shared
 from study.site.place import Place, place_in
@@ -50,17 +50,22 @@ class AtStep:
         return _marks(pages_before(definition, has_health=self.has_health), page)
 
     def page(
-        self, name: str, *, own: Mapping[str, object], fixed: Callable[[], Mapping[str, Any]]
+        self,
+        name: str,
+        *,
+        own: Mapping[str, object],
+        fixed: Callable[[Frame], Mapping[str, Any]],
+        asked: tuple[Hashable, ...] = (),
     ) -> HTMLResponse:
-        """Return a page of the way, with its marks; ``own`` and ``fixed`` as ``cast_page`` says."""
+        """Return a page of the way, with its marks; the rest is as ``cast_page`` says."""
         return cast_page(
             self.here,
             self.visitor.study,
             self.visitor,
             name,
             own=own,
-            asked=(self.has_health,),
-            fixed=lambda _frame: {**fixed(), "way": self.marks(name)},
+            asked=(self.has_health, *asked),
+            fixed=lambda frame: {**fixed(frame), "way": self.marks(name)},
         )
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from fastapi import FastAPI
 
 from study import bots
 from study.checking import (
@@ -19,7 +21,8 @@ from study.checking import (
 )
 from study.commands.preparing import prepare
 from study.commands.self_test import make_self_test
-from study.data import events, export
+from study.data import before, events, export
+from study.design import patches
 from study.design.definition import StudyDefinition, parse_definition
 from study.design.patches import self_test_name
 from study.design.plates import plates
@@ -94,6 +97,47 @@ def test_the_checks_come_one_after_the_other_and_fill_the_tables(site: Any, gues
     ]
     book = export.tables(site.db, site.study).codebook["tables"]["participants"]
     assert "view_dist_cm_se" in {entry["name"] for entry in book}
+
+
+def test_the_checks_pass_the_framework(
+    site: Any, guest: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    walk_to_checks(guest, health="yes")
+    seen: set[str] = set()
+    keep = FastAPI.__call__
+
+    async def noted(self: FastAPI, scope: Any, receive: Any, send: Any) -> None:
+        seen.add(scope.get("path", ""))
+        await keep(self, scope, receive, send)
+
+    monkeypatch.setattr(FastAPI, "__call__", noted)
+    seed = site.people()[0].seed
+    send(guest, {**good_device(site), "refresh_hz": 30.0})
+    send(guest, good_device(site))
+    send(guest, calibration_report(site.study.definition, np.random.default_rng(1)))
+    send(guest, eyesight_report(site.study.definition, digits_of(site.study.definition, seed)))
+    assert guest.at == "/instructions"
+    assert seen == set()
+
+
+def test_each_person_counts_their_own_squares_and_has_their_own_distance(site: Any) -> None:
+    """Pages are cast for many; what differs from one to the next is still theirs."""
+    told = []
+    for number in range(3):
+        guest = site.guest()
+        walk_to_checks(guest, health="yes")
+        squares = re.findall(r'height="24" fill="rgb\((\d+),\1,\1\)"', guest.page.text)
+        seed = site.people()[number].seed
+        own = {strip: patches.strip_levels(seed, strip) for strip in ("dark", "light")}
+        assert [int(grey) for grey in squares] == [*own["dark"], *own["light"]]
+        send(guest, good_device(site, number))
+        rng = np.random.default_rng(number)
+        send(guest, calibration_report(site.study.definition, rng))
+        facts = before.facts_of(site.db, site.people()[number], "calibration")
+        told.append(str(round(facts["view_dist_cm"])))
+        assert f"{told[-1]}" in re.findall(r"about (\d+) cm", guest.page.text)
+        guest.client.close()
+    assert len(set(told)) > 1
 
 
 def test_a_gate_says_what_to_do_and_lets_people_out_kindly(site: Any, guest: Any) -> None:
