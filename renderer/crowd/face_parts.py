@@ -12,6 +12,7 @@ import numpy as np
 
 from renderer.body.makehuman import Floats, Indices, base_mesh
 from renderer.crowd.people import Person
+from renderer.crowd.scalp import Places, head_triangles, hits
 
 GLOSSY: Final = 1.0  # the last channel of ``surface`` on wet eyes
 _SEGMENTS: Final = 14
@@ -67,8 +68,8 @@ def brow_colour(person: Person) -> tuple[float, ...]:
 def brows(person: Person, shape: Floats) -> list[FacePart]:
     """Return two strips on the brow ridge, thick at the nose and tapering outwards."""
     along = np.linspace(0, 1, _BROW_STEPS)
-    half = 3.6 * np.sqrt(np.clip(1.03 - along, 0, 1)) * np.clip(0.7 + along * 2, 0, 1)
-    middle = 749.0 + 6.0 * np.sin(along * 1.9)
+    half = 3.0 * np.sqrt(np.clip(1.02 - along, 0, 1)) * np.clip(0.35 + along * 3, 0, 1)
+    middle = 750.0 + 4.0 * np.sin(along * 2.5)
     row, column = np.divmod(np.arange(2 * (_BROW_STEPS - 1)), _BROW_STEPS - 1)
     a = row * _BROW_STEPS + column
     quads = np.stack([a, a + 1, a + 1 + _BROW_STEPS, a + _BROW_STEPS], axis=1)
@@ -88,14 +89,16 @@ def brows(person: Person, shape: Floats) -> list[FacePart]:
 
 def _on_face(places: Floats, shape: Floats) -> Floats:
     """Carry places (n, 2) of the base mesh's forehead over to a person's (n, 3)."""
+    triangles = head_triangles()
     base = base_mesh().vertices_mm
-    near = base_mesh().vertices_of("body")
-    near = near[(base[near, 2] > 80) & (np.abs(base[near, 1] - 750) < 40)]
-    distance = np.linalg.norm(places[:, None] - base[near][None, :, :2], axis=2)
-    nearest = np.argsort(distance, axis=1, kind="stable")[:, :6]
-    weights = 1 / (np.take_along_axis(distance, nearest, axis=1) + 1.0)
-    weights /= weights.sum(axis=1, keepdims=True)
-    return np.asarray(np.einsum("pk,pkc->pc", weights, shape[near[nearest]]))
+    near = triangles[(np.abs(base[triangles, 1] - 750) < 45).all(axis=1)]
+    near = near[(base[near, 2] > 60).all(axis=1)]
+    origins = np.column_stack([places, np.zeros(len(places))])
+    ahead = np.tile([0.0, 0.0, 1.0], (len(places), 1))
+    way, weights = hits(np.broadcast_to(base[near], (len(places), *near.shape, 3)), origins, ahead)
+    outermost = np.where(np.isfinite(way), way, -1.0).argmax(axis=1)
+    found = Places(near[outermost], weights[np.arange(len(places)), outermost])
+    return found.of(shape)
 
 
 def _halve(quads: Indices) -> Indices:

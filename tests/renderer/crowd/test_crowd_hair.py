@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from renderer.body.makehuman import Floats, base_mesh
+from renderer.body.phenotype import phenotype
 from renderer.crowd.bodies import cached_body
 from renderer.crowd.cast import CAST, TEMPLATES
+from renderer.crowd.face_parts import brows
 from renderer.crowd.figure import Body
 from renderer.crowd.hair import SHEEN
 from renderer.crowd.hair_styles import STYLES
@@ -74,6 +76,16 @@ def test_no_scalp_shows_through_hair(name: str) -> None:
     )
     out = [np.where(np.isfinite(way), way, 0.0).max(axis=1) for way in (skin, grown)]
     assert (out[1] > out[0]).mean() == 1.0
+
+
+@pytest.mark.parametrize("name", ["walker", "right", "elder"])
+def test_painted_brows_are_smooth_curves(name: str) -> None:
+    """Carried over by the nearest vertices they were jagged: jumps of 4 mm from step to step."""
+    person = TEMPLATES[name]
+    shape = base_mesh().vertices_mm + phenotype(races=person.races, **person.build)
+    for brow in brows(person, shape):
+        rows = brow.positions_mm.reshape(3, -1, 3)[:, 1:-1, 1]
+        assert np.abs(np.diff(rows, n=3, axis=1)).max() < 1.5
 
 
 def test_everybody_wears_hair_of_a_style_and_its_strands_run_from_furrow_to_ridge() -> None:
