@@ -62,7 +62,7 @@ def ratings_heat_map(material: Material) -> Figure:
     is_named = len(wide) <= _MOST_ROWS_NAMED
     names, has_eyes = [name for _, name in columns], bool(table["clip"].notna().any())
     height = min(
-        9.0, 1.6 + upright_in(names, names=2) + (0.17 * max(4, len(wide)) if is_named else 4.5)
+        9.0, 1.6 + upright_in(names, names=3) + (0.17 * max(4, len(wide)) if is_named else 4.5)
     )
     width = min(PAGE_WIDTH_IN, 2.2 + 0.42 * len(columns))
     figure = new_figure(max(width, 4.6), height, HEAT_MAP, is_simulated=material.is_simulated)

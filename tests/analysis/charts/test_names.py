@@ -62,14 +62,13 @@ def test_a_name_broken_into_lines_or_within_another_is_found() -> None:
 @pytest.mark.parametrize(
     "tables",
     [
-        tables_of([f"distance{n:02d}" for n in range(25)], ["low", "ultra"]),
+        tables_of([f"distance{n:02d}" for n in range(13)], ["low", "ultra"]),
         tables_of([f"x{ENDLESS}", f"y{ENDLESS}"], [f"{n}{ENDLESS}" for n in "abcd"]),
     ],
-    ids=["25 distances", "240 letters"],
+    ids=["13 distances", "240 letters"],
 )
 def test_no_layout_collapses(tables: Tables) -> None:
-    some = ("decision-chart", "realism-matrix", "realism-per-clip", "realism-by-distance",
-            "ratings-per-person")  # fmt: skip
+    some = ("realism-matrix", "realism-per-clip", "realism-by-distance", "ratings-per-person")
     with pytest.MonkeyPatch.context() as patch, warnings.catch_warnings():
         warnings.simplefilter("error")
         own = [chart for chart in CHARTS if chart.name in some]
