@@ -37,7 +37,7 @@ SKIN_KINDS: Final = (
 class Surface:
     """One lit surface: its geometry for bakes, and its mesh, or its fine and its distant mesh.
 
-    ``veil`` holds triangles of which some let something through, if there are such; ``mesh`` holds
+    ``veil`` holds triangles that let something through, if there are such; ``mesh`` holds
     those alone that do not.
     """
 
@@ -150,9 +150,7 @@ def _skin_rows(part: SkinPart, albedo: Floats, eye: int | None) -> Floats:
 
 
 def _by_cover(part: SkinPart, triangles: Indices) -> tuple[Indices, Indices | None]:
-    """Return the triangles that hide what is behind, and all that are to be seen.
-
-    The second go over the first: no sample stays empty where both kinds meet.
-    """
+    """Return the triangles that hide what is behind, and those that let something through."""
     cover = part.lid[triangles]
-    return triangles[cover.min(axis=1) > 0.999], triangles[cover.max(axis=1) > 0.001]
+    is_solid = cover.min(axis=1) > 0.999
+    return triangles[is_solid], triangles[~is_solid & (cover.max(axis=1) > 0.001)]
