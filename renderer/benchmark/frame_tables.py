@@ -16,8 +16,9 @@ MADE_OF: Final = {
 }
 ASKED_OF: Final = {
     False: (
-        "The submitting thread's own ms per frame and draw calls: without software GL's drawing, "
-        "with the choice of parts that saves it shading. A GPU is spared the choice: see its aims."
+        "The submitting thread's own ms per frame and draw calls, rehearsed without software GL's "
+        "drawing, with the choice of parts that saves it shading. A GPU is spared that: see the "
+        "aims."
     ),
     True: (
         "The submitting thread's own ms per frame, driver included, draw calls, and what bounds "
@@ -123,7 +124,7 @@ def _aims_without_a_gpu(bench: Bench, found: list[Cost]) -> list[Table]:
                 f"{asked_ms:.1f}",
                 f"{row.draw_calls}",
                 f"{(row.reads or 1) - 1}",  # the picture is always read back here
-                f"{most:.3g}",
+                f"{most:.0f}",
                 "within reach" if most >= aim.frames_per_s else "out of reach",
             )
         )
@@ -136,10 +137,10 @@ def _aims_without_a_gpu(bench: Bench, found: list[Cost]) -> list[Table]:
         ),
         Table(
             "What the aims for a GPU ask of this processor",
-            "Frames at 1920x1080 drawn as a GPU gets them, whole: the submitting thread's own ms, "
-            "and the most frames/s that any GPU could show with them. A driver's time comes on "
-            "top, so within reach is not met: that has to be measured on a GPU. The thesis had "
-            "about 50 and 15.",
+            "Frames at 1920x1080 as a GPU gets them, whole, rehearsed without drawing: the "
+            "submitting thread's own ms, and the most frames/s that any GPU could show with them. "
+            "A driver's time comes on top, so within reach is not met: that has to be measured on "
+            "a GPU. The thesis had about 50 and 15.",
             ("", "aim/s", "processor ms", "draw calls", "read-backs", "at most/s", "the aim"),
             promised,
         ),

@@ -1,9 +1,9 @@
 """What a frame asks of the processor besides shading: the submitting thread's time and its calls.
 
-A GPU shades while Python prepares what follows, so a rate is bound by the slower of the two. Of the
-time that the thread itself was running, waiting for pictures read back is left out everywhere, and
-on software GL also drawing, clearing and copying: there they transform, clip and shade on the
-processor. On a GPU these calls are the driver's work, which the thread does pay for.
+A GPU shades while Python prepares what follows, so a rate is bound by the slower of the two. Time
+in which pictures are read back is left out everywhere. On a GPU drawing, clearing and copying are
+the driver's work, which the thread pays for. On software GL they transform, clip and shade on this
+very thread and turn everything else out of its caches: there frames are rehearsed, without them.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ _OWN_FILLS: Final = ("glBlit", "glClear", "glCopy", "glGenerate")
 class Asked:
     """What a stretch of code asked of the processor and of GL.
 
-    ``processor_ms``: the calling thread's, without what the module leaves out. ``reads``: pictures
-    and buffers read back, which took ``wait_ms`` of wall time.
+    ``processor_ms``: the calling thread's, without reading back. ``reads``: pictures and buffers
+    read back, which took ``wait_ms`` of wall time.
     """
 
     processor_ms: float
@@ -63,6 +63,7 @@ class Watch:
     """Count calls and the time that does not count, while ``watched``."""
 
     def __init__(self) -> None:
+        self._rehearses = False
         self.begin()
 
     def begin(self) -> None:
@@ -76,46 +77,50 @@ class Watch:
         own_s = time.thread_time() - self._started_s - self.left_out_s
         return Asked(own_s * 1e3, self.draws, self.reads, self.waited_s * 1e3)
 
-    def drawing(self, call: Callable[..., Any], *, is_timed: bool) -> Callable[..., Any]:
-        """Return a call that counts as a draw; its time is left out where it ``is_timed``."""
-        timed = self.filling(call) if is_timed else call
+    @contextmanager
+    def rehearsing(self) -> Iterator[None]:
+        """Draw, clear and copy nothing meanwhile: calls are counted and end at once."""
+        self._rehearses = True
+        try:
+            yield
+        finally:
+            self._rehearses = False
+
+    def drawing(self, call: Callable[..., Any]) -> Callable[..., Any]:
+        """Return a call that counts as a draw."""
 
         def counted(*given: Any, **named: Any) -> Any:
             self.draws += 1
-            return timed(*given, **named)
+            return None if self._rehearses else call(*given, **named)
 
         return counted
 
     def filling(self, call: Callable[..., Any]) -> Callable[..., Any]:
-        """Return a call whose time is left out."""
+        """Return a call that a rehearsal leaves out."""
 
-        def timed(*given: Any, **named: Any) -> Any:
-            started_s = time.thread_time()
-            try:
-                return call(*given, **named)
-            finally:
-                self.left_out_s += time.thread_time() - started_s
+        def left_out(*given: Any, **named: Any) -> Any:
+            return None if self._rehearses else call(*given, **named)
 
-        return timed
+        return left_out
 
     def reading(self, call: Callable[..., Any]) -> Callable[..., Any]:
         """Return a call that counts as reading back: no processor time, but wall time waited."""
-        timed = self.filling(call)
 
         def counted(*given: Any, **named: Any) -> Any:
             self.reads += 1
-            started_s = time.perf_counter()
+            own_s, started_s = time.thread_time(), time.perf_counter()
             try:
-                return timed(*given, **named)
+                return call(*given, **named)
             finally:
                 self.waited_s += time.perf_counter() - started_s
+                self.left_out_s += time.thread_time() - own_s
 
         return counted
 
 
 @contextmanager
-def watched(*, is_software: bool) -> Iterator[Watch]:
-    """Watch what is asked of moderngl's objects meanwhile; ``is_software``: drawing is left out.
+def watched() -> Iterator[Watch]:
+    """Watch what is asked of moderngl's objects meanwhile.
 
     The methods of moderngl's classes are replaced for so long, and ``gl_function`` where modules of
     the renderer have it: what draws knows nothing of it.
@@ -131,19 +136,18 @@ def watched(*, is_software: bool) -> Iterator[Watch]:
     def own_function(name: str, *arguments: Any, **named: Any) -> Callable[..., Any]:
         call = gl_function(name, *arguments, **named)
         if name.startswith(_OWN_DRAWS):
-            return watch.drawing(call, is_timed=is_software)
-        return watch.filling(call) if is_software and name.startswith(_OWN_FILLS) else call
+            return watch.drawing(call)
+        return watch.filling(call) if name.startswith(_OWN_FILLS) else call
 
     try:
-        for kind, names in _DRAWS:
-            for name in names:
-                replace(kind, name, lambda own: watch.drawing(own, is_timed=is_software))
-        for kind, names in _FILLS if is_software else ():
-            for name in names:
-                replace(kind, name, watch.filling)
-        for kind, names in _READS:
-            for name in names:
-                replace(kind, name, watch.reading)
+        for methods, make in (
+            (_DRAWS, watch.drawing),
+            (_FILLS, watch.filling),
+            (_READS, watch.reading),
+        ):
+            for kind, names in methods:
+                for name in names:
+                    replace(kind, name, make)
         for module in _users_of_gl():
             replace(module, "gl_function", lambda _own: own_function)
         watch.begin()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from renderer.benchmark.clock import QUERY, WALL, Shot, Timed, clock_of, interleaved, timer_of
+from renderer.benchmark.clock import QUERY, Shot, Timed, clock_of, interleaved, timer_of
 from renderer.benchmark.processor import watched
 from renderer.benchmark.result import About, Bench, Cost
 from renderer.benchmark.spread import Spread, asked_of, spread_of
@@ -71,7 +71,7 @@ class Stand:
 
     def time(self, variants: Sequence[Timed], *, are_whole: bool = False) -> list[list[Shot]]:
         """Return a shot per variant and round, taken in turn; whole frames have their rows, too."""
-        with watched(is_software=self.clock == WALL) as watch:
+        with watched() as watch:
             timer = timer_of(self.studio.gl, self.clock, watch=watch, has_rows=are_whole)
             return interleaved(variants, rounds=self.rounds, timer=timer)
 

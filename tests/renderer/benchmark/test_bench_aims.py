@@ -30,6 +30,9 @@ class Frames:
         assert not chooses_parts(self.gl)
         assert (self.spec.width, self.spec.height) == (1920, 1080)
 
+    def show(self, azimuth_deg: float, *, time_s: float) -> None:
+        self.render(azimuth_deg, time_s=time_s)
+
     def render(self, azimuth_deg: float, *, time_s: float) -> Frame:
         assert not chooses_parts(self.gl)
         assert time_s >= 0.0

@@ -14,8 +14,10 @@ from renderer.benchmark.clock import (
     FPS,
     NUDGE_DEG,
     QUERY,
+    REHEARSALS,
     ROW,
     ROW_DEG,
+    TRY_S,
     WALL,
     WARM_UP,
     Row,
@@ -90,9 +92,10 @@ def test_the_wall_clock_times_a_frame_that_was_read_back(gl: moderngl.Context) -
     frames: Any = Frames(busy_s=0.02)
     spent = timer_of(gl, WALL, watch=Watch(), has_rows=True)(frames, 5.0, 0.5)
     assert spent.ms >= 20.0
-    assert 1.0 < spent.asked.processor_ms <= spent.ms  # this thread was busy, when it ran
+    assert spent.asked.processor_ms < 10.0  # a rehearsal's, which was not busy
     assert spent.row is None  # in a row it takes as long
-    assert frames.called == ["render 5 0.5"]
+    rehearsed = [f"show 5 {0.5 + TRY_S * number:g}" for number in range(1, REHEARSALS + 1)]
+    assert frames.called == ["render 5 0.5", *rehearsed]  # people move from one to the next
 
 
 def test_a_gpus_frame_is_told_without_those_in_a_row(

@@ -1,4 +1,4 @@
-"""What a frame asks of the processor: calls are counted, GL's own time is told apart."""
+"""What a frame asks of the processor: calls are counted, software GL's drawing is left out."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_draws_and_reads_are_counted_and_methods_are_theirs_again(
     program = build_program(gl, "screen.vert", fragment="busy.frag")
     screen = gl.vertex_array(program.gl_program, [])
     before = moderngl.VertexArray.render, moderngl.Framebuffer.read
-    with watched(is_software=True) as watch, gl.scope(target, moderngl.NOTHING):
+    with watched() as watch, gl.scope(target, moderngl.NOTHING):
         target.clear()
         screen.render(moderngl.TRIANGLES, vertices=3)
         screen.render(moderngl.TRIANGLES, vertices=3)
@@ -50,32 +50,52 @@ def test_draws_and_reads_are_counted_and_methods_are_theirs_again(
 
 
 @pytest.mark.parametrize(
-    ("kind", "name", "counts_on_software", "counts_on_a_gpu"),
+    ("kind", "name", "is_rehearsed", "counts"),
     [
         ("VertexArray", "render", False, True),
         ("VertexArray", "transform", False, True),
         ("Framebuffer", "clear", False, True),
         ("TextureCube", "build_mipmaps", False, True),
-        ("Framebuffer", "read", False, False),
-        ("Texture", "read", False, False),
+        ("Framebuffer", "read", True, False),
+        ("Texture", "read", True, False),
         ("Buffer", "write", True, True),
     ],
 )
-def test_the_time_in_gl_counts_where_it_is_the_drivers(
-    monkeypatch: pytest.MonkeyPatch,
-    kind: str,
-    name: str,
-    counts_on_software: bool,
-    counts_on_a_gpu: bool,
+def test_drawing_counts_as_the_drivers_and_is_not_rehearsed(
+    monkeypatch: pytest.MonkeyPatch, kind: str, name: str, is_rehearsed: bool, counts: bool
 ) -> None:
     own = getattr(moderngl, kind)
-    monkeypatch.setattr(own, name, keep_busy)
-    for is_software, counts in ((True, counts_on_software), (False, counts_on_a_gpu)):
-        with watched(is_software=is_software) as watch:
+    called = []
+
+    def work(*_given: Any, **_named: Any) -> bytes:
+        called.append(name)
+        return keep_busy()
+
+    monkeypatch.setattr(own, name, work)
+    with watched() as watch:
+        getattr(own, name)(None)
+        assert (watch.asked().processor_ms >= BUSY_S * 1e3) is counts
+        assert called == [name]
+        with watch.rehearsing():
+            watch.begin()
             getattr(own, name)(None)
             spent_ms = watch.asked().processor_ms
-        assert (spent_ms >= BUSY_S * 1e3) is counts
-        assert spent_ms < BUSY_S * 1e3 or counts
+        assert (spent_ms >= BUSY_S * 1e3) is (is_rehearsed and counts)
+        assert len(called) == 1 + is_rehearsed
+
+
+def test_what_is_rehearsed_is_counted_and_leaves_pictures_alone(
+    gl: moderngl.Context, target: moderngl.Framebuffer
+) -> None:
+    program = build_program(gl, "screen.vert", fragment="busy.frag")
+    screen = gl.vertex_array(program.gl_program, [])
+    with watched() as watch, gl.scope(target, moderngl.NOTHING):
+        target.clear(1.0, 1.0, 1.0, 1.0)
+        with watch.rehearsing():
+            target.clear()
+            screen.render(moderngl.TRIANGLES, vertices=3)
+            assert watch.asked().draw_calls == 1
+        assert set(target.read(components=3)) == {255}
 
 
 @pytest.mark.usefixtures("gl")
@@ -83,7 +103,7 @@ def test_functions_that_modules_take_from_gl_count_too(monkeypatch: pytest.Monke
     user: Any = ModuleType("renderer.user_of_gl")
     user.gl_function = gl_function
     monkeypatch.setitem(sys.modules, user.__name__, user)
-    with watched(is_software=True) as watch:
+    with watched() as watch:
         user.gl_function("glFlush")()
         assert watch.asked().draw_calls == 0
         draw = user.gl_function("glDrawArrays", ctypes.c_uint, ctypes.c_int, ctypes.c_int)
@@ -94,6 +114,6 @@ def test_functions_that_modules_take_from_gl_count_too(monkeypatch: pytest.Monke
 
 def test_methods_are_theirs_again_after_a_failure() -> None:
     before = moderngl.Framebuffer.read
-    with pytest.raises(ZeroDivisionError), watched(is_software=True):
+    with pytest.raises(ZeroDivisionError), watched():
         _ = 1 / 0
     assert moderngl.Framebuffer.read is before
