@@ -42,8 +42,12 @@ class Pool(Executor):
     def __init__(self, count: int, *, threads: int) -> None:
         # Python starts it with the first process, and then unblocks SIGINT in that thread for good.
         resource_tracker.ensure_running()
+        self._started: list[SpawnProcess] = []
         self._threads = ThreadPoolExecutor(
-            count, thread_name_prefix="pool", initializer=_leave_interrupts_to_others
+            count,
+            thread_name_prefix="pool",
+            initializer=_begin_thread,
+            initargs=(self._started,),
         )
         self._scratch = tempfile.TemporaryDirectory(prefix="ocularist-")
         self._begin = partial(
@@ -68,7 +72,7 @@ class Pool(Executor):
         """End the processes now, whatever they do."""
         with self._lock:
             self._is_stopped = True
-            for process in self._context.started:
+            for process in self._started:
                 process.terminate()
         self._threads.shutdown(wait=True, cancel_futures=True)
         for pool in self._pools.values():
@@ -109,21 +113,26 @@ class Pool(Executor):
             return self._pools[me].submit(fn, *args, **kwargs)
 
 
+_mine = threading.local()  # ``started``: where a pool's thread notes the processes it starts
+
+
+class _Recorded(SpawnProcess):
+    """A process that the pool of the thread that starts it can end."""
+
+    def start(self) -> None:
+        super().start()
+        _mine.started.append(self)
+
+
 class _Recording(SpawnContext):
-    """Spawns processes and remembers them, so that they can be ended."""
+    """Spawns processes that are noted, for threads of pools."""
 
-    def __init__(self) -> None:
-        super().__init__()
-        self.started: list[SpawnProcess] = []
-
-    def Process(self, *args: Any, **kwargs: Any) -> SpawnProcess:  # type: ignore[override] # noqa: N802 - multiprocessing names it so, a class there
-        process = SpawnProcess(*args, **kwargs)
-        self.started.append(process)
-        return process
+    Process = _Recorded
 
 
-def _leave_interrupts_to_others() -> None:
+def _begin_thread(started: list[SpawnProcess]) -> None:
     """Block SIGINT in this thread and all it starts: Ctrl-C reaches the whole terminal's group."""
+    _mine.started = started
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
