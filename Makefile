@@ -21,7 +21,7 @@ test: ## set up what is missing, then format, lint, types and tests
 	$(PYTHON) -m ruff format --check .
 	$(PYTHON) -m ruff check .
 	$(PYTHON) -m mypy
-	$(PYTHON) -m pytest -m "not long" -n $(JOBS) --dist loadfile $(ARGS)
+	$(PYTHON) -m pytest -m "not long and not peer" -n $(JOBS) --dist loadfile $(ARGS)
 
 test-long: ## long simulations and storms, other browsers, R as a peer; what needs more than make test
 	@deploy/setup test-long
