@@ -20,6 +20,7 @@ from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye.calibration import open_lids
 from renderer.eye.eyes import Eyes
+from renderer.eye.models import EyeModels
 from renderer.eye.place import eye_centre_mm
 from renderer.light import Light
 from renderer.view import look_at
@@ -63,12 +64,15 @@ def our_eye(gl: moderngl.Context, spec: ClipSpec, environment: SoftEnvironment) 
     rims = open_lids()
     return Eyes(
         gl,
-        spec,
-        rims=(rims, rims),
-        light=light,
-        static_cube=lambda _size: gl.texture_cube((FACE_PX, FACE_PX), 4, data, dtype="f2"),
-        crowd_cube=None,
-        has_face=False,
+        EyeModels(
+            gl,
+            spec,
+            rims=(rims, rims),
+            light=light,
+            static_cube=lambda _size: gl.texture_cube((FACE_PX, FACE_PX), 4, data, dtype="f2"),
+            crowd_cube=None,
+            has_face=False,
+        ),
     )
 
 

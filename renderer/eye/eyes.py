@@ -2,62 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 import moderngl
 import numpy as np
 
-from renderer.clip import ClipSpec
-from renderer.eye.kept import Kept
-from renderer.eye.lids import LidRims
 from renderer.eye.model import EyeModel
 from renderer.eye.models import EyeModels, Shares, refracting
 from renderer.eye.place import eye_centre_mm
 from renderer.eye.silhouette import common_box
 from renderer.frame.edge_tiles import EdgeTiles
-from renderer.light import Light
 
 
 class Eyes:
-    """The eyes of a clip. ``rims``, like everything here, are the viewer's left, then right."""
+    """The eyes of a clip, like everything here the viewer's left, then right."""
 
-    def __init__(
-        self,
-        gl: moderngl.Context,
-        spec: ClipSpec,
-        *,
-        rims: tuple[LidRims, LidRims],
-        light: Light,
-        static_cube: Callable[[int], moderngl.TextureCube],
-        crowd_cube: moderngl.TextureCube | None,
-        has_face: bool = True,
-        kept: Kept | None = None,
-    ) -> None:
-        """Build both eyes in their light; ``static_cube`` gives the surroundings at a size.
-
-        Without a face (``has_face``) they mirror all of the surroundings. ``kept`` has what eyes
-        before them were built of, and takes what these are.
-        """
+    def __init__(self, gl: moderngl.Context, models: EyeModels) -> None:
+        """Draw eyes of ``models``, at the LoDs of their clip until ``use`` says otherwise."""
         self._gl = gl
-        self._spec = spec
-        self._models = EyeModels(
-            gl,
-            spec,
-            rims=rims,
-            light=light,
-            static_cube=static_cube,
-            crowd_cube=crowd_cube,
-            has_face=has_face,
-            kept=kept or Kept(),
-        )
+        self._models = models
+        spec = models.spec
         self._shares: list[Shares] = [((spec.left, 1.0),), ((spec.right, 1.0),)]
 
     @property
     def models(self) -> tuple[EyeModel, EyeModel]:
         """Both eyes at the clip's own LoDs, which switching eyes have when they are large."""
-        left, right = self._spec.left, self._spec.right
+        left, right = self._models.spec.left, self._models.spec.right
         return self._models.model(0, left), self._models.model(1, right)
 
     def use(self, eye: int, shares: Shares) -> None:

@@ -34,18 +34,23 @@ class EyeModels:
         light: Light,
         static_cube: Callable[[int], moderngl.TextureCube],
         crowd_cube: moderngl.TextureCube | None,
-        has_face: bool,
-        kept: Kept,
+        has_face: bool = True,
+        kept: Kept | None = None,
     ) -> None:
-        """Arguments as those of ``Eyes``."""
+        """Build both eyes in their light; ``static_cube`` gives the surroundings at a size.
+
+        Of ``rims`` the first are the viewer's left. Without a face (``has_face``) eyes mirror all
+        of the surroundings. ``kept`` has what eyes before them were built of, and takes what these
+        are.
+        """
         self._gl = gl
-        self._spec = spec
+        self.spec = spec
         self._rims = rims
         self._light = light
         self._static_cube = static_cube
         self._crowd_cube = crowd_cube
         self._has_face = has_face
-        self._kept = kept
+        self._kept = kept or Kept()
         self._built: dict[tuple[int, Detail], EyeModel] = {}
         self._morphs: dict[tuple[Detail, Detail], Morph] = {}
 
@@ -73,10 +78,10 @@ class EyeModels:
                 self._gl,
                 eye,
                 detail=detail,
-                spec=self._spec,
+                spec=self.spec,
                 rims=self._rims[eye],
                 light=self._light,
-                cubes=_cubes(detail, self._spec, self._static_cube, self._crowd_cube),
+                cubes=_cubes(detail, self.spec, self._static_cube, self._crowd_cube),
                 has_face=self._has_face,
                 kept=self._kept,
             )

@@ -12,6 +12,7 @@ from renderer.crowd.cube import CrowdCube
 from renderer.eye.cube_size import cube_px
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import EyeModel
+from renderer.eye.models import EyeModels
 from renderer.frame.picture import Picture, Pixels, Radiance
 from renderer.frame.view_passes import PASSES, ViewPasses
 from renderer.lod.path import Places, details_of, places_of_clip, places_of_view, shares_of
@@ -58,12 +59,15 @@ class FrameRenderer:
         self._crowd_cube = self._make_crowd_cube()
         self._eyes = Eyes(
             gl,
-            spec,
-            rims=scene.head.rims,
-            light=scene.light,
-            static_cube=scene.surroundings.cube,
-            crowd_cube=self._crowd_cube.texture if self._crowd_cube else None,
-            kept=scene.kept,
+            EyeModels(
+                gl,
+                spec,
+                rims=scene.head.rims,
+                light=scene.light,
+                static_cube=scene.surroundings.cube,
+                crowd_cube=self._crowd_cube.texture if self._crowd_cube else None,
+                kept=scene.kept,
+            ),
         )
         self._passes = ViewPasses(gl, scene, self._eyes, is_approach=self._is_approach, until=until)
         in_picture = len(views(spec, 0.0, eyes=eyes))

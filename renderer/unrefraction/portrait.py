@@ -15,6 +15,7 @@ from renderer.eye.anatomy import LIMBUS_Z_MM
 from renderer.eye.calibration import open_lids
 from renderer.eye.eyes import Eyes
 from renderer.eye.model import gaze_rotation
+from renderer.eye.models import EyeModels
 from renderer.eye.place import eye_centre_mm
 from renderer.light import Light, Sky
 from renderer.view import look_at, perspective
@@ -44,11 +45,14 @@ def portrait(
     nobody = np.zeros((6, 4), np.float16).tobytes()
     eyes = Eyes(
         gl,
-        spec,
-        rims=(open_lids(), open_lids()),
-        light=light,
-        static_cube=lambda _size: gl.texture_cube((1, 1), 4, mirrored, dtype="f2"),
-        crowd_cube=gl.texture_cube((1, 1), 4, nobody, dtype="f2"),
+        EyeModels(
+            gl,
+            spec,
+            rims=(open_lids(), open_lids()),
+            light=light,
+            static_cube=lambda _size: gl.texture_cube((1, 1), 4, mirrored, dtype="f2"),
+            crowd_cube=gl.texture_cube((1, 1), 4, nobody, dtype="f2"),
+        ),
     )
     turn = gaze_rotation(spec.gaze_yaw_deg, spec.gaze_pitch_deg)
     target = eye_centre_mm(0) + turn @ np.array([0.0, 0.0, LIMBUS_Z_MM])

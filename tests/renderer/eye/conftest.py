@@ -20,6 +20,7 @@ from renderer.eye.caustics import caustic_map
 from renderer.eye.eyes import Eyes
 from renderer.eye.lids import LidRims
 from renderer.eye.micro_relief import micro_relief_tile
+from renderer.eye.models import EyeModels
 from renderer.eye.place import eye_centre_mm
 from renderer.eye.sclera import ScleraMaps
 from renderer.eye.subsurface import Tissue
@@ -104,11 +105,16 @@ class Bench:
         nobody = np.zeros((6, 4), np.float16).tobytes()
         return Eyes(
             self.gl,
-            ClipSpec(left=left, right=right, **spec),
-            rims=rims,
-            light=light,
-            static_cube=lambda _size: self.gl.texture_cube((1, 1), 4, mirrored, dtype="f2"),
-            crowd_cube=self.gl.texture_cube((1, 1), 4, nobody, dtype="f2") if has_crowd else None,
+            EyeModels(
+                self.gl,
+                ClipSpec(left=left, right=right, **spec),
+                rims=rims,
+                light=light,
+                static_cube=lambda _size: self.gl.texture_cube((1, 1), 4, mirrored, dtype="f2"),
+                crowd_cube=self.gl.texture_cube((1, 1), 4, nobody, dtype="f2")
+                if has_crowd
+                else None,
+            ),
         )
 
     def picture(

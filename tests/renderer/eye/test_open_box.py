@@ -10,6 +10,7 @@ from renderer.clip import ClipSpec
 from renderer.detail import Detail
 from renderer.eye import eyes as eyes_module
 from renderer.eye.eyes import Eyes
+from renderer.eye.models import EyeModels
 from renderer.eye.silhouette import Box, common_box
 from renderer.frame.frame import FrameRenderer
 from renderer.scene import Scene
@@ -57,11 +58,14 @@ def test_a_targets_own_box_still_holds_and_comes_back(
     spec = ClipSpec(left=LOW, right=LOW, width=320, height=180)
     eyes = Eyes(
         gl,
-        spec,
-        rims=standard_scene.head.rims,
-        light=standard_scene.light,
-        static_cube=standard_scene.surroundings.cube,
-        crowd_cube=None,
+        EyeModels(
+            gl,
+            spec,
+            rims=standard_scene.head.rims,
+            light=standard_scene.light,
+            static_cube=standard_scene.surroundings.cube,
+            crowd_cube=None,
+        ),
     )
     target = gl.framebuffer([gl.texture((64, 64), 4)], gl.depth_texture((64, 64)))
     target.use()
